@@ -1,0 +1,1 @@
+"""Co-simulation of electric-traction power supply and train movement."""

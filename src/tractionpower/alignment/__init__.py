@@ -1,0 +1,1 @@
+"""Tracks and routes as arrays: kilometres, metres, and what lies where."""

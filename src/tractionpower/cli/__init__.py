@@ -1,0 +1,66 @@
+"""The command line: thin commands over the library.
+
+A command is a function in a module of its own; it imports numba, pandas and the models inside itself, so that ``--help``
+answers at once. To add one: import its module and add a line to the list below.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import sys
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+
+from tractionpower.cli import check, new, schema
+from tractionpower.cli.messages import exit_code_of
+
+app = typer.Typer(
+    name="tractionpower",
+    help="Co-simulation of electric-traction power supply and train movement.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,  # plain help needs no rich and answers faster
+    pretty_exceptions_enable=False,
+)
+app.command("check")(check.check)
+app.command("schema")(schema.schema)
+app.command("new")(new.new)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code: 0 done, 1 errors in the input, 2 wrong usage, 3 not completed."""
+    command = typer.main.get_command(app)
+    try:
+        result = command.main(args=arguments, prog_name="tractionpower", standalone_mode=False)
+    except (Exception, KeyboardInterrupt) as error:
+        code = exit_code_of(error)
+        if code is None:
+            raise
+        return code
+    return result if isinstance(result, int) else 0
+
+
+def _show_version(wanted: bool) -> None:
+    if not wanted:
+        return
+    try:
+        version = importlib.metadata.version("tractionpower")
+    except importlib.metadata.PackageNotFoundError:  # run from a source folder
+        version = "(not installed)"
+    typer.echo(f"tractionpower {version}")
+    raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", help="Show the version and leave.", callback=_show_version, is_eager=True)
+    ] = False,
+) -> None:
+    pass
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,56 @@
+"""JSON schemas of the input files, for editors and other programs; made from the declarations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+
+from tractionpower.errors import UsageError
+from tractionpower.io.wording import did_you_mean, shown
+from tractionpower.model.limits import Limit
+from tractionpower.model.line import Line
+from tractionpower.model.scenario import StudyFile, Timetable
+from tractionpower.model.supply import Supply
+
+_MODELS: dict[str, type[BaseModel]] = {
+    "study": StudyFile,
+    "line": Line,
+    "supply": Supply,
+    "timetable": Timetable,
+    "limits": Limit,
+}
+
+_DIALECT = "https://json-schema.org/draft/2020-12/schema"
+_CSV_NAME = {"type": "string", "pattern": r"\.[cC][sS][vV]$", "description": "Name of a CSV file that holds the list."}
+
+
+def schema_names() -> tuple[str, ...]:
+    """Return the kinds of input files."""
+    return tuple(_MODELS)
+
+
+def schema(name: str) -> dict[str, Any]:
+    """Return the JSON schema of a kind of input file; that of ``limits`` is one row of the CSV file.
+
+    Raises
+    ------
+    UsageError
+        If there is no such kind.
+    """
+    if name not in _MODELS:
+        hint = did_you_mean(name, _MODELS)
+        known = f"known are {', '.join(_MODELS)}"
+        raise UsageError("; ".join(part for part in (f"there is no schema {shown(name)}", hint, known) if part))
+    made = _MODELS[name].model_json_schema(by_alias=True)
+    made["properties"] = {key: _or_csv(node) for key, node in made["properties"].items()}
+    return {"$schema": _DIALECT, **made}
+
+
+def _or_csv(node: dict[str, Any]) -> dict[str, Any]:
+    # A list of declarations may stand in a CSV file; a list of names may not.
+    if node.get("type") != "array" or "$ref" not in node.get("items", {}):
+        return node
+    outer: dict[str, Any] = {key: node[key] for key in ("title", "description", "default") if key in node}
+    inner = {key: value for key, value in node.items() if key not in outer}
+    return {"anyOf": [inner, _CSV_NAME], **outer}

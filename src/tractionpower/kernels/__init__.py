@@ -1,0 +1,1 @@
+"""Compiled calculations on arrays: no names, no files, SI units only."""

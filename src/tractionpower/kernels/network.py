@@ -1,0 +1,246 @@
+"""Newton's method for the DC network: descent on its potential, from a warm start or from no load.
+
+With node potentials V and port voltages u, Kirchhoff's equations are the gradient of
+``Phi(V) = 1/2 V'G V + sum over ports of the integral of I(u) du`` with I counted as taken from the line. The linear
+network is exact, so after each linear solution all that is left of the gradient sits at the ports: the difference
+between what a port's characteristic demands and what the linear network carries. Everything below works on ports only.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tractionpower.kernels.jit import njit
+from tractionpower.kernels.ports import find_segment, linearise, port_current
+from tractionpower.kernels.skeleton import factor_and_solve
+from tractionpower.kernels.spans import condense, expand
+
+TOLERANCE_A = 1e-6
+"""A solution is accepted when every port balances within this current."""
+
+FLAG_A = 1e-3
+"""A step with a larger imbalance is flagged."""
+
+KEEP_A = 0.1 * TOLERANCE_A
+ALL = -1.0
+STEP_V = 300.0
+SMOOTH_V = 20.0
+ABSURD_V = 1e5
+WARM_ITERATIONS = 12
+COLD_ITERATIONS = 300
+
+CONVERGED, NOT_CONVERGED, NOT_SERVABLE = 0, 1, 2
+
+
+@njit
+def solve_linear(network, work):
+    """Solve the network with every port replaced by its tangent; fill `u_next` of all ports and the node potentials.
+
+    Returns
+    -------
+    bool
+        Whether the matrix is positive definite. If not, nothing may be used.
+    """
+    value, node_v = work.value, work.node_v
+    value[:] = work.step_base
+    node_v[:] = 0.0
+    for p in range(network.ports.shape[0]):
+        port = network.ports[p]
+        if port.span < 0:
+            w = work.ports[p]
+            value[port.positive] += w.g
+            value[port.negative] += w.g
+            value[port.coupling] -= w.g
+            node_v[port.positive] -= w.j
+            node_v[port.negative] += w.j
+    if not condense(network, work):
+        return False
+    if not factor_and_solve(network.column_start, network.row, network.target, value, node_v):
+        return False
+    expand(network, work)
+    for p in range(network.ports.shape[0]):
+        port = network.ports[p]
+        if port.span < 0:
+            work.ports[p].u_next = node_v[port.positive] - node_v[port.negative]
+    return True
+
+
+@njit
+def solve_warm(network, work):
+    """Solve from the port voltages at hand.
+
+    A warm start is a shortcut and must not choose between solutions: it is refused where the matrix is not positive
+    definite, where a port moves by more than one segment, and where a demand sits below half the highest no-load
+    voltage, since a second stable solution can only be there.
+
+    Returns
+    -------
+    iterations, worst
+        Number of linear solutions, 0 when refused; largest imbalance of a port [A].
+    """
+    ports, segments = network.ports, network.segments
+    for p in range(ports.shape[0]):
+        w = work.ports[p]
+        w.start_segment = find_segment(segments, ports[p], w.u)
+        change = w.u - w.before_v
+        w.before_v = w.u
+        if abs(change) < SMOOTH_V:  # trains move on steadily: the line through the last two solutions saves an iteration
+            w.u += change
+    before = np.inf
+    for iteration in range(WARM_ITERATIONS + 1):
+        worst = linearise(network, work, 1.0, KEEP_A if iteration > 0 else ALL)
+        if iteration > 0:
+            if worst <= TOLERANCE_A or (worst <= FLAG_A and worst >= 0.5 * before):
+                return iteration, worst
+            before = worst
+        if not solve_linear(network, work):
+            return 0, worst
+        for p in range(ports.shape[0]):
+            port, w = ports[p], work.ports[p]
+            if not abs(w.u_next) <= ABSURD_V or (port.demand and w.u_next < 0.5 * port.start_v):
+                return 0, worst
+            w.u = w.u_next
+            w.i = w.g * w.u + w.j
+            if abs(find_segment(segments, port, w.u) - w.start_segment) > 1:
+                return 0, worst
+    return 0, np.inf
+
+
+@njit
+def solve_cold(network, work):
+    """Solve from no load by descent; it finds the stable solution with the highest voltages.
+
+    Returns
+    -------
+    iterations, worst
+        Number of descent steps; largest imbalance of a port [A].
+    """
+    ports, segments = network.ports, network.segments
+    for p in range(ports.shape[0]):
+        w = work.ports[p]
+        w.before_v = np.inf  # nothing to draw a line through
+        w.u = ports[p].start_v
+        w.i = 0.0
+    best, stalled, worst = np.inf, 0, np.inf
+    for iteration in range(COLD_ITERATIONS):
+        worst = linearise(network, work, 1.0, ALL)
+        stalled = 0 if worst < 0.5 * best else stalled + 1
+        best = min(best, worst)
+        if iteration > 0 and (worst <= TOLERANCE_A or (worst <= FLAG_A and stalled > 3)):
+            return iteration, worst
+        share = 1.0
+        while not solve_linear(network, work):
+            share = 0.5 * share if share > 0.01 else 0.0
+            linearise(network, work, share, ALL)
+        _descend(segments, ports, work.ports)
+    return COLD_ITERATIONS, worst
+
+
+@njit
+def _descend(segments, ports, work):
+    """Go along the direction of the last linear solution to where the potential stops falling steeply."""
+    longest = 0.0
+    for p in range(ports.shape[0]):
+        w = work[p]
+        w.i_next = w.g * w.u_next + w.j
+        longest = max(longest, abs(w.u_next - w.u))
+    high = 1.0 if longest <= STEP_V else STEP_V / longest
+    start = _fall(segments, ports, work, 0.0)
+    t, fall = high, _fall(segments, ports, work, high)
+    if fall > -0.5 * start:
+        low, low_fall, high_fall = 0.0, start, fall
+        for _ in range(60):
+            t = low + (high - low) * low_fall / (low_fall - high_fall)
+            fall = _fall(segments, ports, work, t)
+            if abs(fall) <= -0.5 * start:
+                break
+            if fall > 0.0:  # Illinois: halve the weight of the end that stays
+                high, high_fall, low_fall = t, fall, 0.5 * low_fall
+            else:
+                low, low_fall, high_fall = t, fall, 0.5 * high_fall
+    for p in range(ports.shape[0]):
+        w = work[p]
+        w.u += t * (w.u_next - w.u)
+        w.i += t * (w.i_next - w.i)
+
+
+@njit
+def _fall(segments, ports, work, t):
+    """Return the derivative of the potential along the direction, `t` of the way [W]."""
+    total = 0.0
+    for p in range(ports.shape[0]):
+        w = work[p]
+        du = w.u_next - w.u
+        total += du * (port_current(segments, ports[p], w.u + t * du) - w.i - t * (w.i_next - w.i))
+    return total
+
+
+@njit
+def find_unserved(ports, work):
+    """Return the port whose demand cannot be served in the present solution, or -1."""
+    for p in range(ports.shape[0]):
+        port, u = ports[p], work[p].u
+        if port.scale > 0.0 and port.floor_v > 0.0 and not port.floor_v <= u <= port.ceiling_v:
+            return p
+    return -1
+
+
+@njit
+def _cut_demand(ports, work, factor):
+    for p in range(ports.shape[0]):
+        if ports[p].demand:
+            ports[p].scale = factor * work[p].full_scale
+
+
+@njit
+def solve(network, work, warm):
+    """Solve the network for its stable solution with the highest voltages.
+
+    When the demand cannot be served, all demand is cut by the largest common factor that can, and `scale` of the
+    ports stays cut: devices write it anew before the next solution.
+
+    Parameters
+    ----------
+    network : Network
+    work : Work
+        `place_ports` must have been called for the present places.
+    warm : bool
+        Whether the port voltages in `work` are those of a neighbouring state.
+
+    Returns
+    -------
+    status : int
+        `CONVERGED`, `NOT_CONVERGED` (imbalance above `FLAG_A`) or `NOT_SERVABLE`.
+    iterations : int
+        Linear solutions or descent steps.
+    worst : float
+        Largest imbalance of a port [A].
+    factor : float
+        Common factor by which all demand had to be cut, 1 when it is served.
+    port : int
+        The port that cannot be served, else -1.
+    """
+    ports = network.ports
+    iterations, worst = 0, np.inf
+    if warm:
+        iterations, worst = solve_warm(network, work)
+    if iterations == 0:
+        iterations, worst = solve_cold(network, work)
+    unserved = find_unserved(ports, work.ports)
+    if unserved < 0:
+        return (CONVERGED if worst <= FLAG_A else NOT_CONVERGED), iterations, worst, 1.0, -1
+    for p in range(ports.shape[0]):
+        work.ports[p].full_scale = ports[p].scale
+    low, high = 0.0, 1.0
+    while high - low > 1e-7:
+        middle = 0.5 * (low + high)
+        _cut_demand(ports, work.ports, middle)
+        more, worst = solve_cold(network, work)
+        iterations += more
+        if worst <= FLAG_A and find_unserved(ports, work.ports) < 0:
+            low = middle
+        else:
+            high = middle
+    _cut_demand(ports, work.ports, low)
+    more, worst = solve_cold(network, work)
+    return NOT_SERVABLE, iterations + more, worst, low, unserved

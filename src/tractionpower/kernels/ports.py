@@ -1,0 +1,75 @@
+"""The characteristic of a port: I(U) = a + b U + c/U between break voltages, continuous at the breaks."""
+
+from __future__ import annotations
+
+from tractionpower.kernels.jit import njit
+
+
+@njit
+def find_segment(segments, port, u):
+    """Return the number of the segment of `port` in which `u` [V] lies; at a kink the one with the larger slope."""
+    first = port.first_segment
+    s = first
+    last = first + port.segments - 1
+    while s < last and u >= segments[s + 1].from_v:
+        s += 1
+    if s > first and u == segments[s].from_v and slope(segments[s - 1], u) > slope(segments[s], u):
+        s -= 1
+    return s
+
+
+@njit
+def current(segment, u):
+    """Return I(U) [A] of a segment."""
+    i = segment.a + segment.b * u
+    if segment.c != 0.0:
+        i += segment.c / u
+    return i
+
+
+@njit
+def slope(segment, u):
+    """Return dI/dU [S] of a segment."""
+    g = segment.b
+    if segment.c != 0.0:
+        g -= segment.c / (u * u)
+    return g
+
+
+@njit
+def port_current(segments, port, u):
+    """Return the current [A] that `port` takes at the voltage `u` [V]."""
+    return port.scale * current(segments[find_segment(segments, port, u)], u)
+
+
+@njit
+def linearise(network, work, share, keep_a):
+    """Replace every port by its tangent at its voltage: i(u) = g u + j.
+
+    Falling characteristics (constant power) enter with `share` of their slope only; 1 is Newton's method, 0 makes
+    the linear network positive definite whatever the ports are. A tangent that still meets its characteristic within
+    `keep_a` [A] is kept, and with it all that was computed for its span.
+
+    Returns
+    -------
+    float
+        The largest difference between the characteristic of a port and what the linear network carries [A].
+    """
+    ports, segments, port_work = network.ports, network.segments, work.ports
+    worst = 0.0
+    for p in range(ports.shape[0]):
+        port, w = ports[p], port_work[p]
+        s = find_segment(segments, port, w.u)
+        segment = segments[s]
+        i = port.scale * current(segment, w.u)
+        gap = abs(i - w.i)
+        if gap > keep_a:
+            g = port.scale * slope(segment, w.u)
+            if g < 0.0:
+                g *= share
+            w.g = g
+            w.j = i - g * w.u
+            if port.span >= 0:
+                work.spans[port.span].stale = True
+        worst = max(worst, gap)
+    return worst

@@ -1,0 +1,210 @@
+"""Changes by path: a study is a base and changes such as ``supply.substations[A].internal_resistance_ohm=0.2``.
+
+The same text serves ``--set``, sweeps, outages and sizing. A change works on the plain form of a scenario, and the
+model validates the result again, so that a changed scenario obeys every rule that a loaded one obeys.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import re
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from pydantic import ValidationError
+
+from tractionpower.errors import InputError, Problem
+from tractionpower.model.scenario import Scenario
+
+# An identifier in brackets may hold dots and equals signs, so the first "=" outside brackets ends the path.
+_CHANGE = re.compile(r"(?P<path>(?:[^=\[\]]|\[[^\[\]]*\])+)=(?P<value>.*)", re.DOTALL)
+_STEP = re.compile(r"(?:^|\.)(?P<name>[^.\[\]]+)|\[(?P<key>[^\[\]]+)\]")
+_WORDS = {"null": None, "~": None, "true": True, "false": False}
+_INTEGER = re.compile(r"[-+]?\d+")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_SHOWN = 12
+
+
+def apply_change(scenario: Scenario, change: str) -> Scenario:
+    """Return `scenario` with one value changed.
+
+    Parameters
+    ----------
+    scenario
+        The base; it stays as it is.
+    change
+        ``PATH=VALUE``, for example ``supply.section_cabins[C].state=bypassed``. Lists whose items have an ``id`` are
+        addressed by it, other lists by a zero-based index. The value is read as in YAML: a number, ``true``, ``false``,
+        ``null`` (clears an optional value) or a text; a text in quotes stays a text.
+
+    Raises
+    ------
+    InputError
+        If the path does not exist or the model refuses the value.
+    """
+    return apply_changes(scenario, [change])
+
+
+def apply_changes(scenario: Scenario, changes: Iterable[str]) -> Scenario:
+    """Return `scenario` with all `changes` applied in their order and validated once at the end.
+
+    Changes that only hold together, such as taking `power_kw` from a load and giving it `current_a`, go in one call.
+    See `apply_change` for their form.
+
+    Raises
+    ------
+    InputError
+        With all wrong paths, or else with all complaints of the model.
+    """
+    plain = _thaw(scenario.model_dump(by_alias=True, mode="python"))
+    problems: list[Problem] = []
+    for change in changes:
+        try:
+            _change(plain, change)
+        except InputError as error:
+            problems.extend(error.problems)
+    if problems:
+        raise InputError(problems)
+    try:
+        return Scenario.model_validate(plain)
+    except ValidationError as error:
+        raise InputError(_complaints(plain, error)) from error
+
+
+def model_path(plain: Any, location: Sequence[str | int]) -> str:
+    """Return a pydantic error location as a model path, with identifiers where the items of a list have them.
+
+    >>> model_path({"loads": [{"id": "depot", "km": -1}]}, ("loads", 0, "km"))
+    'loads[depot].km'
+    """
+    path = ""
+    for step in location:
+        if isinstance(step, int):
+            item = plain[step] if isinstance(plain, list | tuple) and step < len(plain) else None
+            name = item.get("id") if isinstance(item, dict) else None
+            path += f"[{step if name is None else name}]"
+            plain = item
+        else:
+            path += f"[{step}]" if not step.isidentifier() else f".{step}" if path else step
+            plain = plain.get(step) if isinstance(plain, dict) else None
+    return path
+
+
+def parse_scalar(text: str) -> Any:
+    """Return the value that `text` stands for: number, true, false, null or text; a text in quotes stays a text.
+
+    >>> [parse_scalar(text) for text in ("0.2", "3", "null", "00:05:00", "'3'")]
+    [0.2, 3, None, '00:05:00', '3']
+
+    Raises
+    ------
+    ValueError
+        If a quote is not closed.
+    """
+    text = text.strip()
+    if text[:1] in {'"', "'"}:
+        return _unquote(text)
+    if text.lower() in _WORDS:
+        return _WORDS[text.lower()]
+    if _INTEGER.fullmatch(text):
+        return int(text)
+    return float(text) if _NUMBER.fullmatch(text) else text
+
+
+def _unquote(text: str) -> str:
+    if text[0] == '"':
+        value = json.loads(text)  # its error is a ValueError
+        return str(value)
+    if not re.fullmatch(r"'(?:[^']|'')*'", text):
+        raise ValueError("the quote is not closed")
+    return text[1:-1].replace("''", "'")
+
+
+def _thaw(value: Any) -> Any:
+    """Return `value` with lists in place of tuples, so that items can be replaced."""
+    if isinstance(value, dict):
+        return {key: _thaw(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_thaw(item) for item in value]
+    return value
+
+
+def _change(plain: dict[str, Any], change: str) -> None:
+    path, value = _parse(change)
+    steps = _steps(path)
+    container: Any = plain
+    done = ""
+    for position, (step, label) in enumerate(steps):
+        key = _key(container, step, path, done)
+        if position == len(steps) - 1:
+            container[key] = value
+        else:
+            container, done = container[key], done + label
+
+
+def _parse(change: str) -> tuple[str, Any]:
+    match = _CHANGE.fullmatch(change.strip())
+    if match is None or not match["value"].strip():
+        raise _refusal("bad_change", "", f"{change!r} is not a change", "PATH=VALUE", "write null as value to clear a value")
+    path = match["path"].strip()
+    try:
+        return path, parse_scalar(match["value"])
+    except ValueError:
+        raise _refusal("bad_change", path, f"the quotes in {match['value']} do not pair", "a number or a text") from None
+
+
+def _steps(path: str) -> list[tuple[str, str]]:
+    """Return the steps of `path`, each with its label as it stands in the path."""
+    matches = list(_STEP.finditer(path))
+    if "".join(match[0] for match in matches) != path:
+        example = "for example supply.substations[A].km"
+        raise _refusal("unknown_path", path, f"{path!r} is not a path", f"names with dots and [id], {example}")
+    return [(match["name"] or match["key"], match[0]) for match in matches]
+
+
+def _key(container: Any, step: str, path: str, done: str) -> Any:
+    """Return the key or index of `container` that `step` names."""
+    if isinstance(container, dict):
+        keys = {str(key): [key] for key in container}
+    elif isinstance(container, list):
+        keys = _item_keys(container)
+    else:
+        raise _refusal("unknown_path", path, f"{done} is a single value and has no part {step!r}", remedy=f"set {done} itself")
+    found = keys.get(step, [])
+    if not found:
+        raise _unknown(path, done or "the scenario", step, list(keys))
+    if len(found) > 1:
+        raise _refusal("ambiguous_path", path, f"{done} has {len(found)} items with id {step!r}", remedy="give each its own id")
+    return found[0]
+
+
+def _item_keys(items: list[Any]) -> dict[str, list[int]]:
+    """Return what addresses each item: its id if all items have one, else its index."""
+    by_id = all(isinstance(item, dict) and "id" in item for item in items)
+    keys: dict[str, list[int]] = {}
+    for index, item in enumerate(items):
+        keys.setdefault(str(item["id"] if by_id else index), []).append(index)
+    return keys
+
+
+def _unknown(path: str, owner: str, step: str, names: list[str]) -> InputError:
+    shown = ", ".join(names[:_SHOWN]) + (f", ... ({len(names)} in all)" if len(names) > _SHOWN else "")
+    folded = {name.lower(): name for name in names}
+    nearest = difflib.get_close_matches(step.lower(), folded, n=1, cutoff=0.5)
+    remedy = f"did you mean {folded[nearest[0]]!r}?" if nearest else ""
+    return _refusal("unknown_path", path, f"{owner} has no {step!r}", shown or "nothing, it is empty", remedy)
+
+
+def _refusal(code: str, path: str, found: str, allowed: str = "", remedy: str = "") -> InputError:
+    return InputError([Problem(code, path, found, allowed, remedy)])
+
+
+def _complaints(plain: dict[str, Any], error: ValidationError) -> list[Problem]:
+    """Return the complaints of the model as problems that name the path and the refused value."""
+    problems = []
+    for detail in error.errors(include_url=False):
+        given = detail["input"]
+        found = "" if isinstance(given, dict | list | tuple) else f"{given!r}: "
+        problems.append(Problem("bad_value", model_path(plain, detail["loc"]), found + detail["msg"]))
+    return problems

@@ -1,0 +1,67 @@
+"""Limits of standards as data: every value with its source and how far it was verified."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+from tractionpower.model.base import Declaration, Identifier, Real, Text
+
+Status = Literal["verified", "secondary", "recalled", "user"]
+
+VOLTAGE_NAMES = ("u_min2", "u_min1", "u_n", "u_max1", "u_max2")
+
+
+class Limit(Declaration):
+    """One row of a limits table.
+
+    `status` says how the value is known: *verified* against the standard's text, *secondary* from a source that quotes
+    it, *recalled* from memory, *user* given by the user.
+    """
+
+    system: Identifier
+    name: Identifier
+    value: Real
+    unit: Text = ""
+    meaning: Text = ""
+    source: Text = ""
+    status: Status = "user"
+
+
+class SystemVoltages(Declaration):
+    """Voltage limits of a supply system [V] (EN 50163, clause 4; values as in the limits table)."""
+
+    u_min2: Real
+    u_min1: Real
+    u_n: Real
+    u_max1: Real
+    u_max2: Real
+
+
+def overlay(base: Sequence[Limit], rows: Sequence[Limit]) -> tuple[Limit, ...]:
+    """Return `base` with each row replaced or added by `rows`, matched by system and name."""
+    merged = {(limit.system, limit.name): limit for limit in base}
+    merged.update({(limit.system, limit.name): limit for limit in rows})
+    return tuple(merged[key] for key in sorted(merged))
+
+
+def find_limit(limits: Sequence[Limit], system: str, name: str) -> Limit | None:
+    """Return the row of `limits` for a system and a name, or None."""
+    return next((limit for limit in limits if limit.system == system and limit.name == name), None)
+
+
+def system_voltages(limits: Sequence[Limit], system: str) -> SystemVoltages:
+    """Return the five voltage limits of `system`.
+
+    Raises
+    ------
+    KeyError
+        If a voltage of the system is not in the table; `supply.checks` reports that before.
+    """
+    values = {}
+    for name in VOLTAGE_NAMES:
+        limit = find_limit(limits, system, name)
+        if limit is None:
+            raise KeyError(f"{system} {name}")
+        values[name] = limit.value
+    return SystemVoltages(**values)

@@ -1,0 +1,94 @@
+"""A scenario: everything that one run needs, resolved and frozen; and the study file that names its parts."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from tractionpower.model.base import Count, Declaration, Format, Real, Text, TimeOfDay
+from tractionpower.model.limits import Limit
+from tractionpower.model.line import Line
+from tractionpower.model.quantity import field
+from tractionpower.model.supply import Supply
+
+
+class Clock(Declaration):
+    """The simulated time."""
+
+    start: TimeOfDay = Field(description="Start of the simulation.")
+    end: TimeOfDay = Field(description="End of the simulation.")
+    step_s: Real = field("step_s", "Length of a time step.", at_least=0.02, at_most=5.0, default=1.0)
+    warm_up: TimeOfDay | None = Field(
+        default=None, description="Length of the first part of the run, as HH:MM[:SS], that is left out of the key figures."
+    )
+
+    @model_validator(mode="after")
+    def _runs_forward(self) -> Clock:
+        if not self.start < self.end:
+            raise PydanticCustomError("clock", "start is not before end")
+        if self.warm_up is not None and self.warm_up >= self.end - self.start:
+            raise PydanticCustomError("clock", "warm_up leaves nothing of the run")
+        return self
+
+
+class Output(Declaration):
+    """What a run writes."""
+
+    every_s: Real | None = field("every_s", "Interval of the rows; left out: every step.", above=0, default=None)
+    tables: tuple[Text, ...] | None = Field(default=None, description="Tables to write; left out: all.")
+
+
+class Timetable(Declaration):
+    """The scheduled timetable (RJ). This version computes networks: it has no trains yet."""
+
+    format: Format = 1
+    trains: tuple[()] = ()
+
+
+class StudyFile(Declaration):
+    """The file ``study.yaml``: names the parts of a study and sets the clock."""
+
+    format: Format = 1
+    name: Text = Field(default="", description="Name for people.")
+    line: Text = Field(default="line.yaml", description="File of the line.")
+    supply: Text = Field(default="supply.yaml", description="File of the supply system.")
+    timetable: Text | None = Field(default=None, description="File of the timetable; left out: a network calculation.")
+    clock: Clock
+    coupling: Literal["full", "constant_voltage"] = Field(
+        default="full", description="full: trains and network in one step; constant_voltage: currents at a fixed voltage."
+    )
+    coupling_voltage_v: Real | None = field(
+        "coupling_voltage_v", "Voltage of the constant-voltage coupling.", above=0, default=None, source="U_n of the system"
+    )
+    seed: Count = Field(default=1, ge=0, description="Seed of everything that is drawn.")
+    limits: Text | None = Field(default=None, description="CSV file that overlays the shipped limits row by row.")
+    output: Output = Output()
+
+
+class Scenario(Declaration):
+    """One run, resolved: no file names, all parts in place.
+
+    Equal scenarios have equal `input_hash`, whatever the files were called.
+    """
+
+    name: Text = ""
+    line: Line
+    supply: Supply
+    timetable: Timetable = Timetable()
+    clock: Clock
+    coupling: Literal["full", "constant_voltage"] = "full"
+    coupling_voltage_v: Real | None = None
+    seed: Count = 1
+    limits: tuple[Limit, ...]
+    output: Output = Output()
+
+    @property
+    def input_hash(self) -> str:
+        """SHA-256 of the canonical JSON of this scenario."""
+        plain = self.model_dump(mode="json", by_alias=True)
+        text = json.dumps(plain, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+        return hashlib.sha256(text.encode()).hexdigest()

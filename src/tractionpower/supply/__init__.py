@@ -1,0 +1,1 @@
+"""The DC supply: substations, section cabins, contact lines, return circuit and fixed loads, compiled into tables."""

@@ -1,0 +1,68 @@
+"""Characteristics of the fixed devices as segments I(U) = a + b U + c/U, counted as taken from the line."""
+
+from __future__ import annotations
+
+from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S
+from tractionpower.model.limits import SystemVoltages
+from tractionpower.model.supply import Load, Substation
+
+Segments = list[tuple[float, float, float, float]]
+"""Rows (from_v, a, b, c) with rising `from_v`; the first holds downwards without end."""
+
+NO_FLOOR_V = 0.0
+CEILING_RAMP_V = 1e-3
+"""Width of a hard ceiling [V]."""
+
+_DOWN = float("-inf")
+
+
+def source_segments(substation: Substation) -> Segments:
+    """Return I(U) of a substation: ``-max(0, (E - U)/R)``, or linear when it conducts both ways.
+
+    A blocked rectifier keeps a tiny conductance, so that a network whose rectifiers all block does not float.
+    """
+    e = no_load_voltage(substation)
+    g = 1.0 / substation.internal_resistance_ohm
+    conducting = (_DOWN, -e * g, g, 0.0)
+    if substation.conducts == "both":
+        return [conducting]
+    return [conducting, (e, -e * BLOCKED_CONDUCTANCE_S, BLOCKED_CONDUCTANCE_S, 0.0)]
+
+
+def no_load_voltage(substation: Substation) -> float:
+    """Return the no-load voltage E at the present grid voltage [V]."""
+    return substation.no_load_voltage_v * substation.grid_voltage_pu
+
+
+def load_segments(load: Load, voltages: SystemVoltages) -> Segments:
+    """Return I(U) of a fixed load, with the limits of its voltage range or, for ``limits: none``, without.
+
+    Constant between U_min2 and U_max2, below linear in U to zero at 0 V; what feeds back is reduced linearly from
+    `fold_back_from_v` (default U_max1) to zero at U_max2.
+    """
+    low = floor_voltage(load, voltages) or voltages.u_min2
+    if load.power_kw is not None:
+        power = 1000.0 * load.power_kw
+        constant: tuple[float, float, float] = (0.0, 0.0, power)
+        at_low = power / low
+    else:
+        assert load.current_a is not None  # the model allows no other load
+        constant = (load.current_a, 0.0, 0.0)
+        at_low = load.current_a
+    segments: Segments = [(_DOWN, 0.0, 0.0, 0.0), (0.0, 0.0, at_low / low, 0.0), (low, *constant)]
+    if load.limits == "range" and at_low < 0.0:
+        high = voltages.u_max2
+        from_v = min(load.fold_back_from_v or voltages.u_max1, high - CEILING_RAMP_V)
+        a, _, c = constant
+        width = high - from_v
+        # (a + c/U) (high - U)/width
+        segments += [(from_v, (a * high - c) / width, -a / width, c * high / width), (high, 0.0, 0.0, 0.0)]
+    return segments
+
+
+def floor_voltage(load: Load, voltages: SystemVoltages) -> float:
+    """Return the voltage below which a load without limits counts as not served [V]; 0 for a load with limits.
+
+    No solution on the upper branch lies there: one load alone folds at half the no-load voltage.
+    """
+    return NO_FLOOR_V if load.limits == "range" else 0.05 * voltages.u_n

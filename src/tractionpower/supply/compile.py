@@ -1,0 +1,262 @@
+"""From the declared supply to the solver's tables. Here kilometres, kilowatts and ohms per kilometre become SI."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, CONDUCTOR, EDGE, PORT, SEGMENT, SPAN, Network
+from tractionpower.model.limits import Limit, SystemVoltages, system_voltages
+from tractionpower.model.line import Line
+from tractionpower.model.supply import Load, Substation, Supply
+from tractionpower.supply.characteristics import (
+    NO_FLOOR_V,
+    Segments,
+    floor_voltage,
+    load_segments,
+    no_load_voltage,
+    source_segments,
+)
+from tractionpower.supply.ordering import Structure, order_nodes
+from tractionpower.supply.topology import Feeder, Node, Span, Topology, build_topology
+
+CEILING_FACTOR = 5.0
+"""Multiple of the no-load voltage above which feeding back without limits counts as not served."""
+
+
+@dataclass(frozen=True, slots=True)
+class SupplyTables:
+    """A supply system compiled for the solver, with the names that its numbers stand for.
+
+    Attributes
+    ----------
+    network
+        Tables of the solver; the ports are the sources, then the loads, each by identifier.
+    edges
+        Fixed resistances between skeleton nodes, record array of `EDGE`.
+    substations
+        All substations by identifier.
+    source_port
+        Port of each substation, -1 when its rectifiers are out of service.
+    busbar
+        Positive and negative node of each substation, -1 where its busbars are not in the network; shape (n, 2).
+    loads, load_port
+        All loads by identifier and their ports.
+    feeders, feeder_end
+        Feeders, and for each the conductor (of `network.conductors`) and its end (0 left, 1 right); shape (n, 2).
+    sections, section_nodes
+        Track and kilometre of the cross-sections, and their contact line and rail nodes; shape (n, 2).
+    voltages
+        Voltage limits of the system.
+    """
+
+    network: Network
+    edges: NDArray[np.void]
+    substations: tuple[Substation, ...]
+    source_port: NDArray[np.int64]
+    busbar: NDArray[np.int64]
+    loads: tuple[Load, ...]
+    load_port: NDArray[np.int64]
+    feeders: tuple[Feeder, ...]
+    feeder_end: NDArray[np.int64]
+    sections: tuple[tuple[str, float], ...]
+    section_nodes: NDArray[np.int64]
+    voltages: SystemVoltages
+
+
+def compile_network(supply: Supply, line: Line, limits: tuple[Limit, ...]) -> SupplyTables:
+    """Compile a supply system that has passed `supply.checks.check_supply`."""
+    return _Compiler(supply, line, limits).compile()
+
+
+class _Compiler:
+    def __init__(self, supply: Supply, line: Line, limits: tuple[Limit, ...]) -> None:
+        self.voltages = system_voltages(limits, supply.system)
+        self.topology: Topology = build_topology(supply, line)
+        self.substations = tuple(sorted(supply.substations, key=lambda substation: substation.id))
+        self.loads = tuple(sorted(supply.loads, key=lambda load: load.id))
+        self.sources = [substation for substation in self.substations if substation.state == "in_service"]
+        self.sources = [substation for substation in self.sources if substation.id in self.topology.busbars]
+        self.find = self.topology.nodes.find
+
+    def compile(self) -> SupplyTables:
+        self._number_nodes()
+        spans, conductors, terminals, scatter = self._span_tables()
+        ports, segments = self._port_tables()
+        network = Network(
+            spans, conductors, ports, segments, terminals, scatter,
+            self.structure.column_start, self.structure.row, self.structure.target, self._base(),
+        )  # fmt: skip
+        source_ids = [substation.id for substation in self.sources]
+        source_port = [source_ids.index(s.id) if s.id in source_ids else -1 for s in self.substations]
+        busbars = [self.topology.busbars.get(s.id) for s in self.substations]
+        return SupplyTables(
+            network=network,
+            edges=self._edges(),
+            substations=self.substations,
+            source_port=np.array(source_port, np.int64),
+            busbar=_pairs([(self.node(b.positive), self.node(b.negative)) if b else (-1, -1) for b in busbars]),
+            loads=self.loads,
+            load_port=len(self.sources) + np.arange(len(self.loads), dtype=np.int64),
+            feeders=tuple(self.topology.feeders),
+            feeder_end=_pairs([self._feeder_end(feeder) for feeder in self.topology.feeders]),
+            sections=tuple((track, km) for track, km, _, _ in self.topology.sections),
+            section_nodes=_pairs([(self.node(c), self.node(r)) for _, _, c, r in self.topology.sections]),
+            voltages=self.voltages,
+        )
+
+    # -- nodes ---------------------------------------------------------------------------------------------------
+
+    def node(self, node: Node) -> int:
+        """Return the number of a node: its rank in the elimination, or ground."""
+        return self.number[self.find(node)]
+
+    def _number_nodes(self) -> None:
+        topology, find = self.topology, self.find
+        wires = [(find(c.left), find(c.right)) for span in topology.spans for c in span.conductors]
+        wires += [(find(a), find(b)) for a, b, _ in topology.edges]
+        buses = {s.id: (find(b.positive), find(b.negative)) for s in self.sources if (b := topology.busbars[s.id])}
+        others = [(find(b.positive), find(b.negative)) for b in topology.busbars.values()]
+        nodes = sorted({node for pair in wires + others for node in pair}, key=repr)
+        crossings = [(find(c.left), find(span.conductors[span.returns[c.name[1]]].left))
+                     for span in topology.spans for c in span.conductors if c.name[0] == "contact"]  # fmt: skip
+        islands = _components(nodes, wires + list(buses.values()))
+        self.island = {node: number for number, island in enumerate(islands) for node in island}
+        self.no_load = defaultdict(
+            float,
+            {
+                number: max(no_load_voltage(s) for s in self.sources if self.island[buses[s.id][0]] == number)
+                for number in {self.island[positive] for positive, _ in buses.values()}
+            },
+        )
+        negatives = [negative for _, negative in buses.values()]
+        rails = {find(span.conductors[-1].left) for span in topology.spans}
+        grounds = set()
+        for whole in _components(nodes, wires + list(buses.values()) + crossings):
+            candidates = [node for node in negatives if node in whole] or sorted(whole & rails, key=repr)
+            grounds.add(candidates[0] if candidates else min(whole, key=repr))
+        free = [node for node in nodes if node not in grounds]
+        rank = {node: k for k, node in enumerate(free)} | dict.fromkeys(grounds, len(free))
+        cliques = [[rank[find(n)] for c in span.conductors for n in (c.left, c.right)] for span in topology.spans]
+        cliques += [[rank[a], rank[b]] for a, b in wires + others]
+        self.structure: Structure = order_nodes(len(free), cliques)
+        self.number = {free[old]: new for new, old in enumerate(self.structure.order)} | dict.fromkeys(grounds, len(free))
+        self.floating = [
+            min(self.number[node] for node in island) for island in islands if not island & grounds
+        ]
+
+    def _base(self) -> NDArray[np.float64]:
+        n, place = len(self.structure.order), self.structure.place
+        base = np.zeros(n + 1 + len(self.structure.row))
+        for edge in self._edges():
+            i, j, g = int(edge["first"]), int(edge["second"]), edge["conductance_s"]
+            base[i] += g
+            base[j] += g
+            base[place(i, j)] -= g
+        base[self.floating] += BLOCKED_CONDUCTANCE_S
+        return base
+
+    def _edges(self) -> NDArray[np.void]:
+        rows = [(self.node(a), self.node(b), 1.0 / ohm) for a, b, ohm in self.topology.edges]
+        return np.array([row for row in rows if row[0] != row[1]], EDGE)
+
+    # -- spans ---------------------------------------------------------------------------------------------------
+
+    def _span_tables(self) -> tuple[NDArray[np.void], NDArray[np.void], NDArray[np.int64], NDArray[np.int64]]:
+        spans, conductors, terminals, scatter = [], [], [], []
+        self.first_conductor: list[int] = []
+        for span in self.topology.spans:
+            left, right = self._terminals(span)
+            ends, width = right + left, len(span.conductors)
+            slots = {node: k for k, node in enumerate(ends)}
+            ground_slot = len(ends) + width
+            spans.append((span.length_m, len(conductors), width, len(terminals), len(right), len(left), len(scatter)))
+            self.first_conductor.append(len(conductors))
+            for k, conductor in enumerate(span.conductors):
+                i, j = self.node(conductor.left), self.node(conductor.right)
+                conductors.append(
+                    (
+                        conductor.ohm_per_m, i, j, self.structure.place(i, j),
+                        slots.get(i, ground_slot), len(ends) + k, slots.get(j, ground_slot),
+                    )
+                )  # fmt: skip
+            terminals += ends
+            scatter += [self.structure.place(ends[i], ends[j]) for i in range(len(ends)) for j in range(i + 1)]
+        return (
+            np.array(spans, SPAN), np.array(conductors, CONDUCTOR),
+            np.array(terminals, np.int64), np.array(scatter, np.int64),
+        )  # fmt: skip
+
+    def _terminals(self, span: Span) -> tuple[list[int], list[int]]:
+        ground = len(self.structure.order)
+        left = sorted({self.node(c.left) for c in span.conductors} - {ground})
+        right = sorted({self.node(c.right) for c in span.conductors} - {ground} - set(left))
+        return left, right
+
+    def _feeder_end(self, feeder: Feeder) -> tuple[int, int]:
+        for number, span in enumerate(self.topology.spans):
+            if feeder.track in span.returns:
+                conductor = self.first_conductor[number] + span.contact(feeder.track)
+                if feeder.side == "high_km" and span.from_km == feeder.km:
+                    return conductor, 0
+                if feeder.side == "low_km" and span.to_km == feeder.km:
+                    return conductor, 1
+        raise LookupError(f"no contact line beside the feeder {feeder}")
+
+    # -- ports ---------------------------------------------------------------------------------------------------
+
+    def _port_tables(self) -> tuple[NDArray[np.void], NDArray[np.void]]:
+        rows: list[Segments] = [source_segments(s) for s in self.sources]
+        rows += [load_segments(load, self.voltages) for load in self.loads]
+        ports = np.zeros(len(rows), PORT)
+        ports["segments"] = [len(row) for row in rows]
+        ports["first_segment"] = np.cumsum(ports["segments"]) - ports["segments"]
+        ports["scale"] = 1.0
+        for port, substation in zip(ports, self.sources, strict=False):
+            bus = self.topology.busbars[substation.id]
+            i, j = self.node(bus.positive), self.node(bus.negative)
+            port["span"], port["positive"], port["negative"] = -1, i, j
+            port["coupling"] = self.structure.place(i, j)
+            port["start_v"] = self.no_load[self.island[self.find(bus.positive)]]
+        for port, load in zip(ports[len(self.sources) :], self.loads, strict=True):
+            self._place_load(port, load)
+        return ports, np.array([segment for row in rows for segment in row], SEGMENT)
+
+    def _place_load(self, port: np.void, load: Load) -> None:
+        number, x = self.topology.locate(load.track, load.km)
+        span = self.topology.spans[number]
+        first, contact = self.first_conductor[number], span.contact(load.track)
+        port["span"], port["x_m"], port["demand"] = number, x, True
+        port["positive"], port["negative"] = first + contact, first + span.returns[load.track]
+        port["start_v"] = self.no_load[self.island[self.find(span.conductors[contact].left)]]
+        port["floor_v"] = floor_voltage(load, self.voltages)
+        if port["floor_v"] > NO_FLOOR_V:
+            port["ceiling_v"] = CEILING_FACTOR * max(port["start_v"], self.voltages.u_max2)
+
+
+def _pairs(rows: list[tuple[int, int]]) -> NDArray[np.int64]:
+    return np.array(rows, np.int64).reshape(-1, 2)
+
+
+def _components(nodes: list[Node], pairs: list[tuple[Node, Node]]) -> list[set[Node]]:
+    """Return the connected components, ordered by their first node."""
+    neighbours: dict[Node, set[Node]] = {node: set() for node in nodes}
+    for a, b in pairs:
+        neighbours[a].add(b)
+        neighbours[b].add(a)
+    seen: set[Node] = set()
+    found = []
+    for start in nodes:
+        if start in seen:
+            continue
+        component, front = {start}, [start]
+        while front:
+            fresh = neighbours[front.pop()] - component
+            component |= fresh
+            front += fresh
+        seen |= component
+        found.append(component)
+    return found

@@ -1,0 +1,131 @@
+import pytest
+
+from tractionpower.errors import InputError, OutputError
+from tractionpower.io.limits_files import shipped_limits
+from tractionpower.io.scenario_files import load_scenario, read_scenario, save_scenario
+
+
+def test_a_sound_study_is_loaded(write_study):
+    folder = write_study()
+    loaded = load_scenario(folder)
+    assert loaded.scenario.name == "Test"
+    assert loaded.scenario.clock.end == 900.0
+    assert loaded.scenario.limits == shipped_limits()
+    assert (loaded.folder, loaded.problems, loaded.origin) == (folder, (), "a path")
+
+
+def test_the_study_file_itself_may_be_named(write_study):
+    folder = write_study()
+    (folder / "study.yaml").rename(folder / "variant.yaml")
+    assert load_scenario(folder / "variant.yaml").provenance.locate("clock") == "variant.yaml:3"
+
+
+def test_file_names_do_not_enter_the_hash(write_study):
+    first = load_scenario(write_study()).scenario
+    folder = write_study(study_yaml='format: 1\nname: Test\nline: l.yaml\nclock: {start: "00:00:00", end: 00:15:00}\n')
+    (folder / "line.yaml").rename(folder / "l.yaml")
+    second = load_scenario(folder).scenario
+    assert first == second
+    assert first.input_hash == second.input_hash
+
+
+def test_rows_in_csv_and_yaml_give_the_same_scenario(write_study):
+    rows = "gradients: [{from_km: 0, to_km: 1.5, permille: 2, tracks: [1, 2]}, {from_km: 2, to_km: 3, permille: 1}]\n"
+    table = "from_km;to_km;permille;tracks\n0;1,5;2;1 2\n2;3;1;\n"
+    first = load_scenario(write_study({"line.yaml": rows})).scenario
+    assert load_scenario(write_study({"line.yaml": "gradients: g.csv\n"}, g_csv=table)).scenario == first
+
+
+def test_problems_of_all_files_are_told_at_once_in_the_order_of_the_files(write_study):
+    folder = write_study(
+        study_yaml="format: 1\nseed: -1\nclok: {}\nlimits: l.csv\n",
+        line_yaml="format: 1\ntracks: 5\nstations: []\nstations: []\n",
+        supply_yaml="format: 1\nsubstations:\n\t- {}\n",
+        l_csv="system,name,value,unit\ndc3000,u_max2,high,V\n",
+    )
+    with pytest.raises(InputError) as caught:
+        load_scenario(folder)
+    assert [(problem.code, problem.place) for problem in caught.value.problems] == [
+        ("missing_key", "study.yaml:1"),
+        ("out_of_bounds", "study.yaml:2"),
+        ("unknown_key", "study.yaml:3"),
+        ("wrong_type", "line.yaml:2"),
+        ("duplicate_key", "line.yaml:4"),
+        ("tab", "supply.yaml:3"),
+        ("wrong_type", "l.csv:2"),
+    ]
+
+
+def test_a_broken_study_file_does_not_hide_problems_of_its_parts(problems_of_study):
+    problems = problems_of_study(study_yaml="format: [\n", line_yaml="format: 1\ntracks: 5\n")
+    assert [problem.place for problem in problems] == ["study.yaml:2", "line.yaml:2"]
+
+
+def test_a_missing_part_is_told_where_it_is_named(only_problem):
+    problem = only_problem(study_yaml="format: 1\nline: none.yaml\nclock: {start: 00:00, end: 01:00}\n")
+    assert (problem.code, problem.path, problem.place) == ("missing_file", "line", "study.yaml:2")
+
+
+def test_a_folder_as_a_part(write_study):
+    folder = write_study(study_yaml="format: 1\nline: sub\nclock: {start: 00:00, end: 01:00}\n")
+    (folder / "sub").mkdir()
+    loaded, (problem,) = read_scenario(folder)
+    assert loaded is None
+    assert (problem.code, problem.place) == ("not_a_file", "sub")
+
+
+def test_a_duplicate_key_alone_is_an_error(only_problem):
+    problem = only_problem({"line.yaml": "stations: []\nstations: []\n"})
+    assert (problem.code, problem.place) == ("duplicate_key", "line.yaml:6")
+
+
+STUDY = "format: 1\ntimetable: t.yaml\nclock: {start: 00:00, end: 01:00}\n"
+
+
+def test_a_timetable_without_trains_is_read(problems_of_study):
+    assert problems_of_study(study_yaml=STUDY, t_yaml="format: 1\ntrains: []\n") == []
+
+
+@pytest.mark.parametrize("trains", ["[{id: 1, train: en57}]", "trains.csv"])
+def test_trains_are_one_clear_problem(only_problem, trains):
+    problem = only_problem(study_yaml=STUDY, t_yaml=f"format: 1\ntrains: {trains}\n")
+    assert (problem.code, problem.path, problem.place) == ("no_trains_yet", "timetable.trains", "t.yaml:2")
+    assert "networks only" in problem.remedy
+
+
+LIMITS = "format: 1\nlimits: l.csv\nclock: {start: 00:00, end: 01:00}\n"
+
+
+def test_limits_are_laid_over_the_shipped_ones(write_study):
+    folder = write_study(study_yaml=LIMITS, l_csv="system,name,value,unit\ndc3000,u_max2,3950,V\nmine,u_n,1,\n")
+    limits = {(limit.system, limit.name): limit for limit in load_scenario(folder).scenario.limits}
+    assert len(limits) == len(shipped_limits()) + 1
+    assert (limits["dc3000", "u_max2"].value, limits["dc3000", "u_max2"].status) == (3950.0, "user")
+
+
+@pytest.mark.parametrize(
+    ("row", "code", "path", "found"),
+    [
+        ("dc3000,u_n,=A1,V", "wrong_type", "limits[dc3000 u_n].value", "'=A1' in column value"),
+        (",u_n,3,V", "missing_key", "limits[1].system", "nothing in column system"),
+        ("dc3000,u_max2,4000,V", "duplicate_row", "limits", "the limit dc3000 u_max2 2 times"),
+    ],
+)
+def test_problems_of_limits(only_problem, row, code, path, found):
+    problem = only_problem(study_yaml=LIMITS, l_csv=f"system,name,value,unit\ndc3000,u_max2,3950,V\n{row}\n")
+    assert (problem.code, problem.path, problem.place, problem.found) == (code, path, "l.csv:3", found)
+
+
+def test_only_changed_limits_are_saved(write_study, tmp_path):
+    folder = write_study(study_yaml=LIMITS, l_csv="system,name,value,unit\ndc3000,u_max2,3950,V\n")
+    scenario = load_scenario(folder).scenario
+    save_scenario(scenario, tmp_path / "saved")
+    assert (tmp_path / "saved" / "limits.csv").read_text().count("\n") == 2
+    assert load_scenario(tmp_path / "saved").scenario == scenario
+
+
+def test_saving_where_nothing_can_be_written(write_study, tmp_path):
+    scenario = load_scenario(write_study()).scenario
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="cannot write"):
+        save_scenario(scenario, tmp_path / "file")
