@@ -84,3 +84,11 @@ def test_errors_and_warnings_are_counted():
 def test_an_input_error_from_any_command_is_told_and_1(capsys):
     assert exit_code_of(InputError([Problem("gap", "line.gradients", "a gap", place="line.yaml:4")])) == 1
     assert "line.yaml:4: line.gradients: a gap" in capsys.readouterr().err
+
+
+def test_check_looks_at_the_scenario_as_a_whole_and_names_the_line(study, capsys):
+    file = study / "supply.yaml"
+    file.write_text(file.read_text(encoding="utf-8").replace('track: "1", km: 4.0', 'track: "1", km: 400.0'), encoding="utf-8")
+    line = file.read_text(encoding="utf-8").splitlines().index('  - {id: depot, track: "1", km: 400.0, power_kw: 400.0}') + 1
+    assert main(["check", str(study)]) == 1
+    assert f"supply.yaml:{line}: supply.loads[depot]" in capsys.readouterr().err

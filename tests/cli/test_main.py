@@ -85,3 +85,12 @@ def test_the_whole_way_in_a_process(tmp_path):
     assert result.returncode == 1
     assert "line.yaml:2: line.tracks: found 5" in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_a_reader_of_a_pipe_that_leaves_gets_no_traceback():
+    command = f'"{sys.executable}" -m tractionpower schema | head -1'
+    result = subprocess.run(
+        command, shell=True, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": SOURCES}, check=False
+    )
+    assert "Traceback" not in result.stderr
+    assert "BrokenPipe" not in result.stderr

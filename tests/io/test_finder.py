@@ -37,7 +37,7 @@ def test_a_path_that_exists_wins(places):
 
 
 def test_an_unknown_name_lists_the_known_ones(places):
-    with pytest.raises(UsageError, match="did you mean cmk.*cmk, e65"):
+    with pytest.raises(UsageError, match=r"did you mean cmk.*cmk, e65"):
         find_study("cmj")
 
 

@@ -1,8 +1,14 @@
+import tempfile
+from pathlib import Path
+
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from tractionpower.errors import InputError, OutputError
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.io.scenario_files import load_scenario, read_scenario, save_scenario
+from tractionpower.io.templates import template_texts
 
 
 def test_a_sound_study_is_loaded(write_study):
@@ -129,3 +135,45 @@ def test_saving_where_nothing_can_be_written(write_study, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="cannot write"):
         save_scenario(scenario, tmp_path / "file")
+
+
+SNIPPETS = [
+    "\t",
+    "\n",
+    "'",
+    "{",
+    "]",
+    ": ",
+    "- ",
+    "&a ",
+    "*a",
+    "!x ",
+    "? ",
+    "|\n",
+    "---\n",
+    "<<: ",
+    "1e999",
+    "\0",
+    "\x85",
+    "null",
+    "../",
+    "é",
+]
+
+
+@settings(derandomize=True, deadline=None, max_examples=60)
+@given(
+    st.sampled_from(["study.yaml", "line.yaml", "supply.yaml"]),
+    st.integers(0, 10_000),
+    st.lists(st.sampled_from(SNIPPETS), max_size=4),
+)
+def test_damaged_files_give_problems_with_a_place_and_never_crash(name, at, snippets):
+    texts = template_texts()
+    at %= len(texts[name])
+    texts[name] = texts[name][:at] + "".join(snippets) + texts[name][at + 5 :]
+    with tempfile.TemporaryDirectory() as folder:
+        for file, text in texts.items():
+            (Path(folder) / file).write_text(text, encoding="utf-8")
+        loaded, problems = read_scenario(folder)
+    assert (loaded is None) == bool(problems)
+    assert all(problem.place and str(problem).isprintable() for problem in problems)

@@ -28,9 +28,9 @@ def bomb() -> str:
 @pytest.mark.parametrize(
     ("text", "value"),
     [
-        ("12:30", "12:30"), ("n", "n"), ("on", "on"), ("yes", "yes"), ("2020-01-01", "2020-01-01"), ("010", "010"), ("1_000", "1_000"),
+        ("12:30", "12:30"), ("n", "n"), ("on", "on"), ("yes", "yes"), ("2020-01-01", "2020-01-01"), ("010", "010"),
         ("1", 1), ("-1.5", -1.5), ("1e3", 1000.0), ("0o17", 15), ("0x1F", 31), ("true", True), ("FALSE", False), ("tRUE", "tRUE"),
-        ("null", None), ("~", None), ("", None), (".inf", float("inf")), ("9" * 5000, float("inf")),
+        ("null", None), ("~", None), ("", None), ("1_000", "1_000"), (".inf", float("inf")), ("9" * 5000, float("inf")),
     ],
 )  # fmt: skip
 def test_plain_scalars_follow_yaml_1_2(text, value):
@@ -80,7 +80,7 @@ def test_small_aliases_are_expanded(tmp_path):
         ("a: 1\n".encode("utf-16"), "not_utf8", "line.yaml:1", "UTF-8"),
         ("[" * 3000, "too_deep", "line.yaml", "deep"),
         ("a: " + "[" * 60 + "]" * 60, "too_deep", "line.yaml:1", "deep"),
-        (bomb(), "alias", "line.yaml:1", "100000"),
+        (bomb(), "alias", "line.yaml:2", "100000"),
     ],
 )
 def test_files_that_cannot_be_read(tmp_path, text, code, place, found):

@@ -4,8 +4,11 @@ from tractionpower.io.text_files import Source
 from tractionpower.io.yaml_files import read_yaml
 from tractionpower.io.yaml_text import document
 
-VALUES = ["no", "y", "on", "12:30", "1", "1e3", "0x1", "~", "", " a", "a ", "a: b", "a #b", "- a", "é\u2028\x85\x7f\x00\ud7ff\U0001f600", "a\nb\tc\r", "'", '"',
-          "\\", "{", "[x]", "*x", "&x", "!x", "%x", "@x", "`", "=", "<<", "null", "True", ".inf", "2020-01-01", "\ufeff", "Section cabin"]  # fmt: skip
+VALUES = [
+    "no", "y", "on", "12:30", "1", "1e3", "0x1", "~", "", " a", "a ", "a: b", "a #b", "- a", "a\nb\tc\r", "'", '"', "\\", "{",
+    "[x]", "*x", "&x", "!x", "%x", "@x", "`", "=", "<<", "null", "True", ".inf", "2020-01-01", "\ufeff", "Section cabin",
+    "é\u2028\x85\x7f\x00\ud7ff\U0001f600",
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("value", [*VALUES, 1, -1.5, 1e-7, 1e300, -0.0, True, None, [], {}, [[1, 2], ["a"]]])

@@ -25,10 +25,6 @@ def listed(strategy: st.SearchStrategy) -> st.SearchStrategy[tuple]:
     return st.lists(strategy, max_size=3).map(tuple)
 
 
-def made(kind: type, **parts: st.SearchStrategy) -> st.SearchStrategy:
-    return st.builds(lambda **values: kind(**values), **parts)
-
-
 def stretch(kind: type, **parts: st.SearchStrategy) -> st.SearchStrategy:
     ends = st.tuples(reals(), reals()).filter(lambda pair: pair[0] != pair[1]).map(sorted)
     return st.builds(lambda pair, **values: kind(from_km=pair[0], to_km=pair[1], **values), ends, **parts)
@@ -41,13 +37,13 @@ NAMES = st.text(st.characters(exclude_categories=["Cs", "Cc", "Z"], exclude_char
 TRACKS = st.none() | st.lists(NAMES, max_size=3).map(tuple)
 TIMES = reals(0.0, 3e6)
 
-LINES = made(
+LINES = st.builds(
     Line,
     name=TEXTS,
     source=TEXTS,
     tracks=st.lists(stretch(Track, id=NAMES), min_size=1, max_size=3).map(tuple),
     stations=listed(
-        made(
+        st.builds(
             Station,
             id=NAMES,
             name=TEXTS,
@@ -70,13 +66,13 @@ LINES = made(
     connections=listed(
         st.builds(
             lambda a, b: Connection(from_=a, to=b),
-            made(TrackPoint, track=NAMES, km=reals()),
-            made(TrackPoint, track=NAMES, km=reals()),
+            st.builds(TrackPoint, track=NAMES, km=reals()),
+            st.builds(TrackPoint, track=NAMES, km=reals()),
         )
     ),
 )
 
-SUBSTATIONS = made(
+SUBSTATIONS = st.builds(
     Substation,
     id=NAMES,
     km=reals(),
@@ -108,14 +104,14 @@ def loads(draw: st.DrawFn) -> Load:
     )
 
 
-SUPPLIES = made(
+SUPPLIES = st.builds(
     Supply,
     system=NAMES,
     substations=listed(SUBSTATIONS),
     section_cabins=listed(
-        made(SectionCabin, id=NAMES, km=reals(), state=st.sampled_from(["closed", "bypassed", "open"]), tracks=TRACKS)
+        st.builds(SectionCabin, id=NAMES, km=reals(), state=st.sampled_from(["closed", "bypassed", "open"]), tracks=TRACKS)
     ),
-    section_points=listed(made(SectionPoint, id=NAMES, track=NAMES, km=reals(), state=st.sampled_from(["open", "closed"]))),
+    section_points=listed(st.builds(SectionPoint, id=NAMES, track=NAMES, km=reals(), state=st.sampled_from(["open", "closed"]))),
     contact_lines=st.lists(stretch(ContactLine, resistance_ohm_per_km=positive(10), tracks=TRACKS), min_size=1, max_size=3).map(
         tuple
     ),
@@ -126,7 +122,7 @@ SUPPLIES = made(
 )
 
 LIMITS = listed(
-    made(
+    st.builds(
         Limit,
         system=st.just("dc3000") | NAMES,
         name=st.sampled_from(["u_max2", "u_n", "mine"]),
@@ -145,7 +141,7 @@ CLOCKS = st.builds(
     st.booleans(),
 )
 
-SCENARIOS = made(
+SCENARIOS = st.builds(
     Scenario,
     name=TEXTS,
     line=LINES,
@@ -155,12 +151,12 @@ SCENARIOS = made(
     coupling_voltage_v=st.none() | positive(5000),
     seed=st.integers(0, 2**40),
     limits=LIMITS,
-    output=made(Output, every_s=st.none() | positive(1e3), tables=st.none() | listed(TEXTS)),
+    output=st.builds(Output, every_s=st.none() | positive(1e3), tables=st.none() | listed(TEXTS)),
 )
 
 
 @settings(
-    derandomize=True, deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    derandomize=True, deadline=None, max_examples=100, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 @given(SCENARIOS)
 def test_load_of_save_is_the_same(scenario):

@@ -13,8 +13,8 @@ from typing import Annotated
 
 import typer
 
-from tractionpower.cli import check, new, schema
-from tractionpower.cli.messages import exit_code_of
+from tractionpower.cli import check, new, run, schema, validate
+from tractionpower.cli.messages import DONE, exit_code_of
 
 app = typer.Typer(
     name="tractionpower",
@@ -24,22 +24,33 @@ app = typer.Typer(
     rich_markup_mode=None,  # plain help needs no rich and answers faster
     pretty_exceptions_enable=False,
 )
+app.command("run")(run.run)
 app.command("check")(check.check)
+app.command("validate")(validate.validate)
 app.command("schema")(schema.schema)
 app.command("new")(new.new)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code: 0 done, 1 errors in the input, 2 wrong usage, 3 not completed."""
+    """Run the command line and return its exit code.
+
+    0 done, 1 errors in the input, 2 wrong usage, 3 not completed, 4 a limit is violated (with ``--strict`` only).
+    """
     command = typer.main.get_command(app)
+    given = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        result = command.main(args=arguments, prog_name="tractionpower", standalone_mode=False)
+        # Not command.main(): it has exit codes of its own for Ctrl-C.
+        with command.make_context("tractionpower", given) as context:
+            command.invoke(context)
+        sys.stdout.flush()
+    except typer.Exit as leave:
+        return leave.exit_code
     except (Exception, KeyboardInterrupt) as error:
         code = exit_code_of(error)
         if code is None:
             raise
         return code
-    return result if isinstance(result, int) else 0
+    return DONE
 
 
 def _show_version(wanted: bool) -> None:

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib.util
 import json
 from typing import Annotated
 
@@ -38,11 +37,10 @@ def find_problems(study: str) -> list[Problem]:
     UsageError
         If there is no such study.
     """
+    from tractionpower.cosimulation.check import check_scenario
     from tractionpower.io.scenario_files import read_scenario
 
     loaded, problems = read_scenario(study)
-    if loaded is None or importlib.util.find_spec("tractionpower.cosimulation.check") is None:
+    if loaded is None:
         return problems
-    from tractionpower.cosimulation.check import check_scenario
-
     return [*problems, *loaded.provenance.place(check_scenario(loaded.scenario))]

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
@@ -20,6 +21,7 @@ DONE = 0
 INPUT_ERRORS = 1
 WRONG_USAGE = 2
 NOT_COMPLETED = 3
+LIMIT_VIOLATED = 4
 
 _NO_PLACE = "the study as a whole"
 
@@ -43,6 +45,10 @@ def exit_code_of(error: BaseException) -> int | None:
         return WRONG_USAGE if isinstance(error, UsageError) else NOT_COMPLETED
     if isinstance(error, KeyboardInterrupt | typer.Abort):
         tell("tractionpower: interrupted")
+        return NOT_COMPLETED
+    if isinstance(error, BrokenPipeError):
+        # The reader of a pipe, such as head, has enough; nothing more must be written at the end of the process.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NOT_COMPLETED
     if isinstance(error, _CommandLineError):
         error.show()

@@ -1,0 +1,1 @@
+"""From a scenario to results: checks, tables, blocks of steps, rows."""

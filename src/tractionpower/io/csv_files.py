@@ -65,7 +65,7 @@ def read_csv(source: Source, row: Shape) -> Table:
 def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     """Return rows as CSV text with commas, header first; None becomes an empty cell."""
     buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
+    writer = csv.writer(buffer, lineterminator="\r\n")  # so that a text with either sign is quoted
     writer.writerow(columns)
     writer.writerows(rows)
     return buffer.getvalue()

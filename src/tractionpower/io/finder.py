@@ -50,7 +50,7 @@ def find_study(study: str | Path) -> Study:
         return _study_at(path)
     for folder, origin in _shipped_folders():
         file = folder / str(study) / STUDY_FILE
-        if len(path.parts) == 1 and file.is_file():
+        if len(path.parts) == 1 and _exists(file):
             return Study(file, file.parent, origin)
     raise UsageError(_unknown(str(study)))
 

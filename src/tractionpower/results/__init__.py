@@ -1,0 +1,1 @@
+"""Results: columns with units, tables on disk, key figures, ledgers."""

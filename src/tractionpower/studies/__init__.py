@@ -1,0 +1,1 @@
+"""Runs of many: reference cases and, later, feasibility, outages, sweeps, sizing."""

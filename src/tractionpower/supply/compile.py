@@ -124,7 +124,8 @@ class _Compiler:
         crossings = [(find(c.left), find(span.conductors[span.returns[c.name[1]]].left))
                      for span in topology.spans for c in span.conductors if c.name[0] == "contact"]  # fmt: skip
         islands = _components(nodes, wires + list(buses.values()))
-        self.island = {node: number for number, island in enumerate(islands) for node in island}
+        wired = _components(nodes, wires)  # joined by wires alone: a busbar of its own starts from its own voltage
+        self.island = {node: number for number, part in enumerate(wired) for node in part}
         self.no_load = defaultdict(
             float,
             {

@@ -114,9 +114,10 @@ class Topology:
         LookupError
             If no contact line is there; `supply.checks` reports that before.
         """
-        for number, span in enumerate(self.spans):
-            if track in span.returns and span.from_km - _SHARED_KM <= km <= span.to_km + _SHARED_KM:
-                return number, min(max(self.distance_m(track, span.from_km, km), 0.0), span.length_m)
+        for beyond in (0.0, _SHARED_KM):  # the right side of a cut counts, if there is a contact line
+            for number, span in enumerate(self.spans):
+                if track in span.returns and span.from_km - beyond <= km <= span.to_km + beyond:
+                    return number, min(max(self.distance_m(track, span.from_km, km), 0.0), span.length_m)
         raise LookupError(f"no contact line on track {track} at km {km}")
 
 

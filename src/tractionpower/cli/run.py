@@ -1,0 +1,135 @@
+"""``tractionpower run STUDY``: compute a study and write its results."""
+
+# ruff: noqa: PLC0415 - heavy modules are imported inside the functions that need them
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from tractionpower.cosimulation.run import Outcome, Run
+    from tractionpower.io.scenario_files import LoadedScenario
+    from tractionpower.results.store import RunWriter
+
+
+def run(
+    study: Annotated[str, typer.Argument(help="Folder with a study.yaml, such a file, or the name of a shipped line.")],
+    out: Annotated[Path | None, typer.Option("--out", help="Folder of the results; default reports/<study>/ here.")] = None,
+    changes: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change an input, e.g. supply.substations[A].state=bypassed."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace what is there, even results of another study.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit with 4 when a limit is violated.")] = False,
+) -> None:
+    """Compute a study and write its results."""
+    from tractionpower.cli.messages import tell, tell_problems
+    from tractionpower.io.scenario_files import load_scenario
+    from tractionpower.model.change import apply_changes
+
+    loaded = load_scenario(study)
+    scenario = apply_changes(loaded.scenario, changes or [])
+    folder = out if out is not None else Path("reports") / loaded.folder.name
+    tell(f"{scenario.name or loaded.folder.name}: {loaded.origin}")
+    _warn_of_compilation()
+    prepared, writer = _prepare(loaded, scenario, folder, force)
+    tell_problems(loaded.provenance.place([*loaded.problems, *prepared.warnings]))
+    outcome = _execute(prepared, writer)
+    _show(outcome, prepared)
+    tell(f"results: {folder}")
+    for path in writer.beside:
+        tell(f"{path.name} was written beside a file that another program holds open")
+    raise typer.Exit(_exit_code(outcome, strict))
+
+
+def _warn_of_compilation() -> None:
+    from tractionpower.cli.messages import tell
+    from tractionpower.kernels.jit import is_compiled
+
+    if not is_compiled():
+        tell("first run on this machine: compiling the kernels, up to a minute; later starts use the cache")
+
+
+def _prepare(loaded: LoadedScenario, scenario: Any, folder: Path, force: bool) -> tuple[Run, RunWriter]:
+    from tractionpower.cosimulation.run import Run
+    from tractionpower.errors import InputError
+    from tractionpower.results.store import RunWriter
+
+    study = loaded.folder.name
+    writer = RunWriter(folder, study, scenario.input_hash, force=force)
+    try:
+        return Run(scenario, writer, study), writer
+    except InputError as error:
+        writer.discard()
+        raise InputError(loaded.provenance.place(error.problems)) from None
+
+
+def _execute(prepared: Run, writer: RunWriter) -> Outcome:
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from tractionpower.cli.messages import tell
+
+    bar = Progress(
+        TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"), TimeRemainingColumn(),
+        console=Console(stderr=True), transient=True,
+    )  # fmt: skip
+    try:
+        with bar:
+            task = bar.add_task("computing", total=prepared.steps)
+            outcome = prepared.execute(lambda done, total: bar.update(task, completed=done, total=total))
+        writer.finish(outcome.run, outcome.key_figures)
+    except KeyboardInterrupt:
+        kept = writer.keep_unfinished(prepared.outcome().run)
+        tell(f"interrupted after {prepared.done} of {prepared.steps} steps; what was computed is kept in {kept}")
+        raise
+    return outcome
+
+
+def _exit_code(outcome: Outcome, strict: bool) -> int:
+    from tractionpower.cli.messages import DONE, LIMIT_VIOLATED, NOT_COMPLETED
+
+    if outcome.flagged:
+        return NOT_COMPLETED
+    if strict and not all(verdict["met"] for verdict in outcome.run["verdicts"]):
+        return LIMIT_VIOLATED
+    return DONE
+
+
+def _show(outcome: Outcome, prepared: Run) -> None:
+    """Print what a designer asks first: the loads of the substations, the voltages, the verdicts."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(highlight=False)
+    figures = {(figure["name"], figure["place"]): figure for figure in outcome.key_figures}
+    table = Table(title="Substations", title_justify="left")
+    columns = {"highest_current_a": "highest current [A]", "rms_current_a": "RMS current [A]",
+               "highest_power_kw": "highest power [kW]", "energy_kwh": "energy [kWh]"}  # fmt: skip
+    table.add_column("substation")
+    for heading in columns.values():
+        table.add_column(heading, justify="right")
+    for substation in prepared.scenario.supply.substations:
+        place = f"substation {substation.id}"
+        table.add_row(substation.id, *(f"{figures[name, place]['value']:.1f}" for name in columns))
+    console.print(table)
+    for verdict in outcome.run["verdicts"]:
+        word = "met" if verdict["met"] else "VIOLATED"
+        console.print(
+            f"{verdict['name']} {verdict['value']:.1f} V at {verdict['place']}, {verdict['time']};"
+            f" limit {verdict['limit']} {verdict['limit_value']:g} V ({verdict['status']}): {word}",
+            markup=False,
+        )
+    ledger = outcome.run["ledgers"]["electric"]
+    closes = "closes" if ledger["closes"] else "DOES NOT CLOSE"
+    console.print(
+        f"electric ledger {closes} (worst step {ledger['worst_gap_w']:.2g} W);"
+        f" every node balances within {outcome.run['worst_residual_a']:.2g} A"
+    )
+    if outcome.run["flagged_steps"]:
+        console.print(f"{outcome.run['flagged_steps']} steps are flagged, see table events:")
+        for message in prepared.recorder.events.messages():
+            console.print("  " + message, markup=False)

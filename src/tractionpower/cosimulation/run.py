@@ -1,0 +1,168 @@
+"""The run: tables are compiled, blocks of steps are computed, rows go to a writer as they come."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import metadata
+from typing import Any, Protocol
+
+import numpy as np
+import pyarrow as pa
+
+from tractionpower.cosimulation.check import check_scenario
+from tractionpower.cosimulation.recorder import Recorder
+from tractionpower.errors import Problem, raise_errors
+from tractionpower.kernels.block import advance
+from tractionpower.kernels.tables import LOAD, SOURCE, BlockTables, new_buffers, new_state
+from tractionpower.model.scenario import Scenario
+from tractionpower.supply.characteristics import no_load_voltage
+from tractionpower.supply.compile import SupplyTables, compile_network
+
+BLOCK_S = 0.25
+"""Wall time that a block of steps aims at, so that progress and Ctrl-C live [s]."""
+
+FIRST_BLOCK = 16
+BUFFER_BYTES = 32_000_000
+
+Progress = Callable[[int, int], None]
+"""Called with the steps done and the steps in all."""
+
+
+class Writer(Protocol):
+    """Takes the rows of the tables."""
+
+    def append(self, table: str, rows: pa.Table) -> None:
+        """Take `rows` of `table`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a run ended.
+
+    Attributes
+    ----------
+    run
+        What ``run.json`` says, without the files.
+    key_figures
+        What ``key_figures.json`` holds.
+    warnings
+        Warnings of the checks.
+    """
+
+    run: dict[str, Any]
+    key_figures: list[dict[str, Any]]
+    warnings: tuple[Problem, ...]
+
+    @property
+    def flagged(self) -> bool:
+        """Whether a step did not converge or could not be served, or a ledger does not close."""
+        return bool(self.run["status"] != "complete")
+
+
+class Run:
+    """One run of a scenario.
+
+    Parameters
+    ----------
+    scenario
+        What to run.
+    writer
+        Takes the rows.
+    study
+        Identifier of the study, for ``run.json``.
+
+    Raises
+    ------
+    InputError
+        If the scenario has errors; all of them are told.
+    """
+
+    def __init__(self, scenario: Scenario, writer: Writer, study: str = "") -> None:
+        started = time.perf_counter()
+        problems = check_scenario(scenario)
+        raise_errors(problems)
+        self.scenario, self.study = scenario, study
+        self.warnings = tuple(problems)
+        supply = compile_network(scenario.supply, scenario.line, scenario.limits)
+        self.tables = compile_block(scenario, supply)
+        self.steps = _step_count(scenario)
+        self.recorder = Recorder(scenario, supply, writer)
+        self.done = 0
+        self.compile_seconds = time.perf_counter() - started
+        self.wall_seconds = 0.0
+
+    def execute(self, progress: Progress | None = None) -> Outcome:
+        """Run to the end of the clock and return the outcome.
+
+        After an interruption `outcome` still tells what was done; rows computed so far are with the writer.
+        """
+        row_bytes = 8 * (10 + sum(a.shape[-1] for a in new_buffers(self.tables, 1)[1:]))
+        buffers = new_buffers(self.tables, max(FIRST_BLOCK, min(self.steps, BUFFER_BYTES // row_bytes)))
+        state = new_state(self.tables)
+        started, block = time.perf_counter(), FIRST_BLOCK
+        while self.done < self.steps:
+            block_started = time.perf_counter()
+            rows, _ = advance(self.tables, state, buffers, min(self.done + block, self.steps))
+            pace = (time.perf_counter() - block_started) / max(rows, 1)
+            self.recorder.add(self.done, rows, buffers)
+            self.done += rows
+            block = max(FIRST_BLOCK, int(BLOCK_S / max(pace, 1e-9))) if self.done > FIRST_BLOCK else FIRST_BLOCK
+            self.wall_seconds = time.perf_counter() - started
+            if progress is not None:
+                progress(self.done, self.steps)
+        self.recorder.close()
+        return self.outcome()
+
+    def outcome(self) -> Outcome:
+        """Return what is known of the run up to now."""
+        run = {
+            "format": 1,
+            "status": self._status(),
+            "study": self.study,
+            "name": self.scenario.name,
+            "input_hash": self.scenario.input_hash,
+            "seed": self.scenario.seed,
+            "versions": _versions(),
+            "wall_seconds": self.wall_seconds,
+            "compile_seconds": self.compile_seconds,
+            "steps": self.done,
+            **self.recorder.summary(),
+        }
+        return Outcome(run, self.recorder.key_figures(), self.warnings)
+
+    def _status(self) -> str:
+        if self.done < self.steps:
+            return "interrupted"
+        return "flagged" if self.recorder.flagged else "complete"
+
+
+def compile_block(scenario: Scenario, supply: SupplyTables) -> BlockTables:
+    """Return the tables that a block of steps reads."""
+    sources = np.zeros(len(supply.substations), SOURCE)
+    sources["port"] = supply.source_port
+    sources["positive"], sources["negative"] = supply.busbar.T
+    sources["no_load_v"] = [no_load_voltage(substation) for substation in supply.substations]
+    loads = np.zeros(len(supply.loads), LOAD)
+    loads["port"] = supply.load_port
+    loads["from_s"] = [-np.inf if load.from_ is None else load.from_ for load in supply.loads]
+    loads["to_s"] = [np.inf if load.to is None else load.to for load in supply.loads]
+    clock = np.array([scenario.clock.start, scenario.clock.step_s])
+    return BlockTables(supply.network, supply.edges, sources, loads, supply.feeder_end, supply.section_nodes, clock)
+
+
+def _step_count(scenario: Scenario) -> int:
+    clock = scenario.clock
+    return int(np.ceil((clock.end - clock.start) / clock.step_s - 1e-9))
+
+
+def _versions() -> dict[str, str]:
+    names = ("tractionpower", "numba", "numpy", "pyarrow", "pydantic")
+    found = {}
+    for name in names:
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:  # run from a source folder
+            found[name] = "not installed"
+    return found

@@ -1,0 +1,126 @@
+"""The clock: a block of steps, each of them devices, network, record.
+
+A block can end after any step and be resumed; the result does not depend on where it ends.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tractionpower.kernels.flows import conductor_flows, skeleton_balance
+from tractionpower.kernels.jit import njit
+from tractionpower.kernels.network import CONVERGED, FLAG_A, NOT_CONVERGED, solve
+from tractionpower.kernels.ports import port_current
+from tractionpower.kernels.spans import place_ports
+from tractionpower.kernels.tables import BUFFER_FULL, DONE
+
+
+@njit
+def advance(tables, state, buffers, until_step):
+    """Run steps until `until_step` or until the buffers are full.
+
+    Parameters
+    ----------
+    tables : BlockTables
+    state : State
+        Changed in place.
+    buffers : Buffers
+        Row k receives the k-th step of this call.
+    until_step : int
+        The step not to be run any more.
+
+    Returns
+    -------
+    steps : int
+        Number of steps run.
+    reason : int
+        `DONE` or `BUFFER_FULL`.
+    """
+    progress = state.progress[0]
+    row = 0
+    while progress.step < until_step:
+        if row == buffers.steps.shape[0]:
+            return row, BUFFER_FULL
+        t = tables.clock[0] + progress.step * tables.clock[1]
+        changed = _switch_loads(tables, state, t)
+        if changed or not progress.solved:
+            _solve_step(tables, state, progress.solved)
+            progress.solved = True
+        _record(tables, state, buffers, row)
+        progress.step += 1
+        row += 1
+    return row, DONE
+
+
+@njit
+def _switch_loads(tables, state, t):
+    """Switch loads by the time of day; tell whether one has changed."""
+    ports = tables.network.ports
+    changed = False
+    for k in range(tables.loads.shape[0]):
+        load = tables.loads[k]
+        on = load.from_s <= t < load.to_s
+        changed = changed or on != state.load_on[k]
+        state.load_on[k] = on
+    if changed:
+        for k in range(tables.loads.shape[0]):
+            ports[tables.loads[k].port].scale = 1.0 if state.load_on[k] else 0.0
+    return changed
+
+
+@njit
+def _solve_step(tables, state, warm):
+    network, work, result = tables.network, state.work, state.result[0]
+    place_ports(network, work)
+    status, iterations, worst, factor, port = solve(network, work, warm)
+    heat, gap = conductor_flows(network, work, state.balance)
+    edge_heat, node_gap = skeleton_balance(network, work, tables.edges, state.balance)
+    result.worst_a = max(worst, gap, node_gap)
+    result.status = NOT_CONVERGED if status == CONVERGED and not result.worst_a <= FLAG_A else status
+    result.iterations = iterations
+    result.factor = factor
+    result.port = port
+    result.conductor_w = heat + edge_heat
+    result.source_w = 0.0
+    result.regulation_w = 0.0
+    result.load_w = 0.0
+    result.gross_w = 0.0
+    for k in range(tables.sources.shape[0]):
+        source = tables.sources[k]
+        if source.port >= 0:
+            u = work.ports[source.port].u
+            i = -port_current(network.segments, network.ports[source.port], u)
+            result.source_w += source.no_load_v * i
+            result.regulation_w += (source.no_load_v - u) * i
+            result.gross_w += abs(source.no_load_v * i)
+    for k in range(tables.loads.shape[0]):
+        port = tables.loads[k].port
+        p = work.ports[port].u * port_current(network.segments, network.ports[port], work.ports[port].u)
+        result.load_w += p
+        result.gross_w += abs(p)
+
+
+@njit
+def _record(tables, state, buffers, row):
+    network, work = tables.network, state.work
+    buffers.steps[row] = state.result[0]
+    for k in range(tables.sources.shape[0]):
+        source = tables.sources[k]
+        buffers.source_v[row, k] = np.nan
+        buffers.source_a[row, k] = 0.0
+        if source.positive >= 0:
+            buffers.source_v[row, k] = work.node_v[source.positive] - work.node_v[source.negative]
+        if source.port >= 0:
+            u = work.ports[source.port].u
+            buffers.source_a[row, k] = -port_current(network.segments, network.ports[source.port], u)
+    for k in range(tables.loads.shape[0]):
+        port = tables.loads[k].port
+        u = work.ports[port].u
+        buffers.load_v[row, k] = u
+        buffers.load_a[row, k] = port_current(network.segments, network.ports[port], u)
+    for k in range(tables.feeder_end.shape[0]):
+        w = work.conductors[tables.feeder_end[k, 0]]
+        buffers.feeder_a[row, k] = w.left_a if tables.feeder_end[k, 1] == 0 else w.right_a
+    for k in range(tables.section_nodes.shape[0]):
+        contact, rail = tables.section_nodes[k]
+        buffers.section_v[row, k] = work.node_v[contact] - work.node_v[rail]
