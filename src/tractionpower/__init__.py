@@ -1,1 +1,60 @@
-"""Co-simulation of electric-traction power supply and train movement."""
+"""Co-simulation of electric-traction power supply and train movement.
+
+The names below are what notebooks and scripts need; all other modules may change. They are loaded when first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tractionpower.cosimulation.check import check_scenario as check
+    from tractionpower.cosimulation.simulate import simulate
+    from tractionpower.errors import InputError, OutputError, Problem, TractionPowerError, UsageError
+    from tractionpower.io.scenario_files import load
+    from tractionpower.io.scenario_files import save_scenario as save
+    from tractionpower.model.change import apply_changes as change
+    from tractionpower.model.scenario import Scenario
+    from tractionpower.results.results import Results
+
+_HOMES = {
+    "InputError": ("errors", "InputError"),
+    "OutputError": ("errors", "OutputError"),
+    "Problem": ("errors", "Problem"),
+    "Results": ("results.results", "Results"),
+    "Scenario": ("model.scenario", "Scenario"),
+    "TractionPowerError": ("errors", "TractionPowerError"),
+    "UsageError": ("errors", "UsageError"),
+    "change": ("model.change", "apply_changes"),
+    "check": ("cosimulation.check", "check_scenario"),
+    "load": ("io.scenario_files", "load"),
+    "save": ("io.scenario_files", "save_scenario"),
+    "simulate": ("cosimulation.simulate", "simulate"),
+}
+
+__all__ = [
+    "InputError",
+    "OutputError",
+    "Problem",
+    "Results",
+    "Scenario",
+    "TractionPowerError",
+    "UsageError",
+    "change",
+    "check",
+    "load",
+    "save",
+    "simulate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module, attribute = _HOMES[name]
+    return getattr(import_module(f"{__name__}.{module}"), attribute)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

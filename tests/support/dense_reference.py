@@ -337,14 +337,17 @@ class DenseSolver:
     def descend(self, v, factor, most=400):
         """Return the potentials where the descent from `v` ends; they balance to rounding."""
         best, stalled = np.inf, 0
-        absolute = np.abs(self.g)
+        absolute, weights = np.abs(self.g), np.abs(self.a.T)
         for _ in range(most):
-            i, slopes = self.currents(self.a @ v, factor)
+            u = self.a @ v
+            i, slopes = self.currents(u, factor)
             f = self.g @ v + self.a.T @ i
             worst = np.max(np.abs(f), initial=0.0)
             stalled = 0 if worst < 0.5 * best else stalled + 1
             best = min(best, worst)
-            if worst <= 1e-8 or (stalled > 2 and worst <= 1e-6 + np.max(ROUNDING * (absolute @ np.abs(v)))):
+            if worst <= 1e-8:
+                return v
+            if stalled > 2 and np.all(np.abs(f) <= 1e-6 + ROUNDING * (absolute @ np.abs(v) + weights @ np.abs(slopes * u))):
                 return v
             d = self._direction(f, slopes)
             longest = np.max(np.abs(d))

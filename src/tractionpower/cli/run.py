@@ -5,13 +5,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 if TYPE_CHECKING:
     from tractionpower.cosimulation.run import Outcome, Run
     from tractionpower.io.scenario_files import LoadedScenario
+    from tractionpower.model.scenario import Scenario
     from tractionpower.results.store import RunWriter
 
 
@@ -22,6 +23,7 @@ def run(
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Change an input, e.g. supply.substations[A].state=bypassed."),
     ] = None,
+    no_reports: Annotated[bool, typer.Option("--no-reports", help="Write the tables only, no figures.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace what is there, even results of another study.")] = False,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 4 when a limit is violated.")] = False,
 ) -> None:
@@ -39,6 +41,8 @@ def run(
     tell_problems(loaded.provenance.place([*loaded.problems, *prepared.warnings]))
     outcome = _execute(prepared, writer)
     _show(outcome, prepared)
+    if not no_reports:
+        _write_reports(folder, scenario)
     tell(f"results: {folder}")
     for path in writer.beside:
         tell(f"{path.name} was written beside a file that another program holds open")
@@ -53,7 +57,7 @@ def _warn_of_compilation() -> None:
         tell("first run on this machine: compiling the kernels, up to a minute; later starts use the cache")
 
 
-def _prepare(loaded: LoadedScenario, scenario: Any, folder: Path, force: bool) -> tuple[Run, RunWriter]:
+def _prepare(loaded: LoadedScenario, scenario: Scenario, folder: Path, force: bool) -> tuple[Run, RunWriter]:
     from tractionpower.cosimulation.run import Run
     from tractionpower.errors import InputError
     from tractionpower.results.store import RunWriter
@@ -87,6 +91,13 @@ def _execute(prepared: Run, writer: RunWriter) -> Outcome:
         tell(f"interrupted after {prepared.done} of {prepared.steps} steps; what was computed is kept in {kept}")
         raise
     return outcome
+
+
+def _write_reports(folder: Path, scenario: Scenario) -> None:
+    from tractionpower.reporting.figures import write_figures
+    from tractionpower.results.results import Results
+
+    write_figures(Results.open(folder), scenario, folder / "figures")
 
 
 def _exit_code(outcome: Outcome, strict: bool) -> int:

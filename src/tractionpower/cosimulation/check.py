@@ -19,7 +19,7 @@ def check_scenario(scenario: Scenario) -> list[Problem]:
 
 def _check_clock(scenario: Scenario) -> list[Problem]:
     every, step = scenario.output.every_s, scenario.clock.step_s
-    if every is None or abs(every / step - round(every / step)) < 1e-9 and every >= step:
+    if every is None or (abs(every / step - round(every / step)) < 1e-9 and every >= step):
         return []
     return [
         Problem(

@@ -35,7 +35,7 @@ class EventLog:
             self._last = None
         for k in bad:
             key = (int(status[k]), int(steps["port"][k]))
-            fresh = self._last != key or (k > 0 and status[k - 1] == CONVERGED)
+            fresh = self._last != key or bool(k > 0 and status[k - 1] == CONVERGED)
             self._note(float(time_s[k]), steps[k], key, fresh=fresh)
             self._last = key
         if len(steps) and status[-1] == CONVERGED:

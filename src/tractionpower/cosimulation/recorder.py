@@ -203,9 +203,7 @@ def _voltage_figure(which: str, found: tuple[float, str, float]) -> KeyFigure:
     )  # fmt: skip
 
 
-def _substation_figures(
-    name: str, current: Extremes, power: Extremes, k: int, hours: float
-) -> list[KeyFigure]:
+def _substation_figures(name: str, current: Extremes, power: Extremes, k: int, hours: float) -> list[KeyFigure]:
     place = f"substation {name}"
 
     def figure(title: str, value: NDArray[np.float64] | float, definition: str, when: float | None = None) -> KeyFigure:

@@ -149,7 +149,7 @@ def compile_block(scenario: Scenario, supply: SupplyTables) -> BlockTables:
     loads["from_s"] = [-np.inf if load.from_ is None else load.from_ for load in supply.loads]
     loads["to_s"] = [np.inf if load.to is None else load.to for load in supply.loads]
     clock = np.array([scenario.clock.start, scenario.clock.step_s])
-    return BlockTables(supply.network, supply.edges, sources, loads, supply.feeder_end, supply.section_nodes, clock)
+    return BlockTables(supply.network, supply.edges, sources, loads, supply.feeder_end, supply.section_table, clock)
 
 
 def _step_count(scenario: Scenario) -> int:

@@ -71,6 +71,11 @@ def load_scenario(study: str | Path) -> LoadedScenario:
     return loaded
 
 
+def load(study: str | Path) -> Scenario:
+    """Return the scenario of the study at a path, or of the shipped line of that name; see `load_scenario`."""
+    return load_scenario(study).scenario
+
+
 def read_scenario(study: str | Path) -> tuple[LoadedScenario | None, list[Problem]]:
     """Read a study and return it with all problems found; None instead of a scenario if there are errors.
 

@@ -121,6 +121,9 @@ def _record(tables, state, buffers, row):
     for k in range(tables.feeder_end.shape[0]):
         w = work.conductors[tables.feeder_end[k, 0]]
         buffers.feeder_a[row, k] = w.left_a if tables.feeder_end[k, 1] == 0 else w.right_a
-    for k in range(tables.section_nodes.shape[0]):
-        contact, rail = tables.section_nodes[k]
-        buffers.section_v[row, k] = work.node_v[contact] - work.node_v[rail]
+    for k in range(tables.sections.shape[0]):
+        section = tables.sections[k]
+        if section.port >= 0:
+            buffers.section_v[row, k] = work.ports[section.port].u
+        else:
+            buffers.section_v[row, k] = work.node_v[section.contact] - work.node_v[section.rail]

@@ -11,12 +11,13 @@ import logging
 import os
 import tempfile
 from collections.abc import Callable
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
 from typing import Any
 
 import llvmlite.binding
 import numba
+import numpy as np
 from platformdirs import user_cache_path
 
 log = logging.getLogger(__name__)
@@ -56,8 +57,10 @@ def is_compiled() -> bool:
 
 def njit(function: Callable[..., Any]) -> Any:
     """Compile `function` with the flags of this project; nothing that hides NaN."""
+    if numba.config.DISABLE_JIT:
+        return _interpreted(function)
     folder = cache_folder()
-    if folder is None or numba.config.DISABLE_JIT:
+    if folder is None:
         return numba.njit(error_model="numpy", nogil=True)(function)
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(folder)  # read while decorating only, so other users of numba keep their own
@@ -65,3 +68,22 @@ def njit(function: Callable[..., Any]) -> Any:
         return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
     finally:
         numba.config.CACHE_DIR = before
+
+
+def _interpreted(function: Callable[..., Any]) -> Any:
+    """Return `function` so that it runs without numba: numpy gives the fields of a record as attributes in recarrays only."""
+
+    @wraps(function)
+    def call(*arguments: Any) -> Any:
+        return function(*map(_with_attributes, arguments))
+
+    return call
+
+
+def _with_attributes(value: Any) -> Any:
+    """Return record arrays, alone or in a NamedTuple, as recarrays on the same memory; all else as it is."""
+    if isinstance(value, np.ndarray):
+        return value.view(np.recarray) if value.dtype.type is np.void else value
+    if isinstance(value, tuple) and hasattr(value, "_make"):
+        return value._make(map(_with_attributes, value))
+    return value

@@ -130,6 +130,8 @@ def solve_cold(network, work):
             return iteration, worst
         share = 1.0
         while not solve_linear(network, work):
+            if share == 0.0:  # not even without falling characteristics: not a number, or lost in rounding
+                return COLD_ITERATIONS, np.inf
             share = 0.5 * share if share > 0.01 else 0.0
             linearise(network, work, share, ALL)
         _descend(segments, ports, work.ports)
@@ -147,7 +149,7 @@ def _descend(segments, ports, work):
     high = 1.0 if longest <= STEP_V else STEP_V / longest
     start = _fall(segments, ports, work, 0.0)
     t, fall = high, _fall(segments, ports, work, high)
-    if fall > -0.5 * start:
+    if start < 0.0 and fall > -0.5 * start:  # start is zero where nothing but rounding is left
         low, low_fall, high_fall = 0.0, start, fall
         for _ in range(60):
             t = low + (high - low) * low_fall / (low_fall - high_fall)

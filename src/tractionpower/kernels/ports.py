@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from tractionpower.kernels.jit import njit
 
 
@@ -71,5 +73,6 @@ def linearise(network, work, share, keep_a):
             w.j = i - g * w.u
             if port.span >= 0:
                 work.spans[port.span].stale = True
-        worst = max(worst, gap)
+        if not gap <= worst:
+            worst = gap if gap >= 0.0 else np.inf  # not a number must not pass for a balance
     return worst

@@ -206,6 +206,9 @@ SOURCE = np.dtype([("port", "i8"), ("positive", "i8"), ("negative", "i8"), ("no_
 LOAD = np.dtype([("port", "i8"), ("from_s", "f8"), ("to_s", "f8")])
 """A fixed load and the times of day between which it is on."""
 
+SECTION = np.dtype([("contact", "i8"), ("rail", "i8"), ("port", "i8")])
+"""A place whose voltage is recorded: two skeleton nodes, or a port in a span (else -1)."""
+
 DONE, BUFFER_FULL = 0, 1
 """Why `advance` came back."""
 
@@ -221,8 +224,8 @@ class BlockTables(NamedTuple):
         Record arrays of `EDGE`, `SOURCE`, `LOAD`.
     feeder_end
         Conductor and end (0 left, 1 right) that each feeder supplies, shape (feeders, 2).
-    section_nodes
-        Contact line and rail node of each cross-section, shape (sections, 2).
+    sections
+        Places whose voltage is recorded, record array of `SECTION`.
     clock
         Start [s after midnight], step [s], shape (2,).
     """
@@ -232,7 +235,7 @@ class BlockTables(NamedTuple):
     sources: NDArray[np.void]
     loads: NDArray[np.void]
     feeder_end: NDArray[np.int64]
-    section_nodes: NDArray[np.int64]
+    sections: NDArray[np.void]
     clock: NDArray[np.float64]
 
 
@@ -297,5 +300,5 @@ def copy_state(state: State) -> State:
 def new_buffers(tables: BlockTables, rows: int) -> Buffers:
     """Return buffers for `rows` steps."""
     sources, loads = len(tables.sources), len(tables.loads)
-    widths = (sources, sources, loads, loads, len(tables.feeder_end), len(tables.section_nodes))
+    widths = (sources, sources, loads, loads, len(tables.feeder_end), len(tables.sections))
     return Buffers(np.zeros(rows, STEP_RESULT), *(np.zeros((rows, width)) for width in widths))

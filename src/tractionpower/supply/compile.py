@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, CONDUCTOR, EDGE, PORT, SEGMENT, SPAN, Network
+from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, CONDUCTOR, EDGE, PORT, SECTION, SEGMENT, SPAN, Network
 from tractionpower.model.limits import Limit, SystemVoltages, system_voltages
 from tractionpower.model.line import Line
 from tractionpower.model.supply import Load, Substation, Supply
@@ -47,8 +47,9 @@ class SupplyTables:
         All loads by identifier and their ports.
     feeders, feeder_end
         Feeders, and for each the conductor (of `network.conductors`) and its end (0 left, 1 right); shape (n, 2).
-    sections, section_nodes
-        Track and kilometre of the cross-sections, and their contact line and rail nodes; shape (n, 2).
+    sections, section_table
+        Track and kilometre of the places whose voltage is recorded, so that the voltage runs straight between them; and
+        where the solver finds it, record array of `SECTION`.
     voltages
         Voltage limits of the system.
     """
@@ -63,7 +64,7 @@ class SupplyTables:
     feeders: tuple[Feeder, ...]
     feeder_end: NDArray[np.int64]
     sections: tuple[tuple[str, float], ...]
-    section_nodes: NDArray[np.int64]
+    section_table: NDArray[np.void]
     voltages: SystemVoltages
 
 
@@ -81,6 +82,7 @@ class _Compiler:
         self.sources = [substation for substation in self.substations if substation.state == "in_service"]
         self.sources = [substation for substation in self.sources if substation.id in self.topology.busbars]
         self.find = self.topology.nodes.find
+        self.probes = self._probes()
 
     def compile(self) -> SupplyTables:
         self._number_nodes()
@@ -103,10 +105,19 @@ class _Compiler:
             load_port=len(self.sources) + np.arange(len(self.loads), dtype=np.int64),
             feeders=tuple(self.topology.feeders),
             feeder_end=_pairs([self._feeder_end(feeder) for feeder in self.topology.feeders]),
-            sections=tuple((track, km) for track, km, _, _ in self.topology.sections),
-            section_nodes=_pairs([(self.node(c), self.node(r)) for _, _, c, r in self.topology.sections]),
+            sections=tuple(place[:2] for place in self.topology.sections) + tuple(self.probes),
+            section_table=self._section_table(),
             voltages=self.voltages,
         )
+
+    def _probes(self) -> list[tuple[str, float]]:
+        """Return the places beside each load on the tracks that share its return conductor: the voltage bends there too."""
+        places = {
+            (track, load.km)
+            for load in self.loads
+            for track in self.topology.spans[self.topology.locate(load.track, load.km)[0]].returns
+        }
+        return sorted(places - {(load.track, load.km) for load in self.loads})
 
     # -- nodes ---------------------------------------------------------------------------------------------------
 
@@ -145,9 +156,7 @@ class _Compiler:
         cliques += [[rank[a], rank[b]] for a, b in wires + others]
         self.structure: Structure = order_nodes(len(free), cliques)
         self.number = {free[old]: new for new, old in enumerate(self.structure.order)} | dict.fromkeys(grounds, len(free))
-        self.floating = [
-            min(self.number[node] for node in island) for island in islands if not island & grounds
-        ]
+        self.floating = [min(self.number[node] for node in island) for island in islands if not island & grounds]
 
     def _base(self) -> NDArray[np.float64]:
         n, place = len(self.structure.order), self.structure.place
@@ -167,7 +176,10 @@ class _Compiler:
     # -- spans ---------------------------------------------------------------------------------------------------
 
     def _span_tables(self) -> tuple[NDArray[np.void], NDArray[np.void], NDArray[np.int64], NDArray[np.int64]]:
-        spans, conductors, terminals, scatter = [], [], [], []
+        spans: list[tuple[float | int, ...]] = []
+        conductors: list[tuple[float | int, ...]] = []
+        terminals: list[int] = []
+        scatter: list[int] = []
         self.first_conductor: list[int] = []
         for span in self.topology.spans:
             left, right = self._terminals(span)
@@ -207,11 +219,17 @@ class _Compiler:
                     return conductor, 1
         raise LookupError(f"no contact line beside the feeder {feeder}")
 
+    def _section_table(self) -> NDArray[np.void]:
+        rows = [(self.node(contact), self.node(rail), -1) for _, _, contact, rail in self.topology.sections]
+        first = len(self.sources) + len(self.loads)
+        return np.array(rows + [(-1, -1, first + k) for k in range(len(self.probes))], SECTION)
+
     # -- ports ---------------------------------------------------------------------------------------------------
 
     def _port_tables(self) -> tuple[NDArray[np.void], NDArray[np.void]]:
         rows: list[Segments] = [source_segments(s) for s in self.sources]
         rows += [load_segments(load, self.voltages) for load in self.loads]
+        rows += [[(float("-inf"), 0.0, 0.0, 0.0)] for _ in self.probes]
         ports = np.zeros(len(rows), PORT)
         ports["segments"] = [len(row) for row in rows]
         ports["first_segment"] = np.cumsum(ports["segments"]) - ports["segments"]
@@ -222,20 +240,27 @@ class _Compiler:
             port["span"], port["positive"], port["negative"] = -1, i, j
             port["coupling"] = self.structure.place(i, j)
             port["start_v"] = self.no_load[self.island[self.find(bus.positive)]]
-        for port, load in zip(ports[len(self.sources) :], self.loads, strict=True):
+        first = len(self.sources)
+        for port, load in zip(ports[first:], self.loads, strict=False):
             self._place_load(port, load)
+        for port, (track, km) in zip(ports[first + len(self.loads) :], self.probes, strict=True):
+            self._place_port(port, track, km)
         return ports, np.array([segment for row in rows for segment in row], SEGMENT)
 
     def _place_load(self, port: np.void, load: Load) -> None:
-        number, x = self.topology.locate(load.track, load.km)
-        span = self.topology.spans[number]
-        first, contact = self.first_conductor[number], span.contact(load.track)
-        port["span"], port["x_m"], port["demand"] = number, x, True
-        port["positive"], port["negative"] = first + contact, first + span.returns[load.track]
-        port["start_v"] = self.no_load[self.island[self.find(span.conductors[contact].left)]]
+        self._place_port(port, load.track, load.km)
+        port["demand"] = True
         port["floor_v"] = floor_voltage(load, self.voltages)
         if port["floor_v"] > NO_FLOOR_V:
             port["ceiling_v"] = CEILING_FACTOR * max(port["start_v"], self.voltages.u_max2)
+
+    def _place_port(self, port: np.void, track: str, km: float) -> None:
+        number, x = self.topology.locate(track, km)
+        span = self.topology.spans[number]
+        first, contact = self.first_conductor[number], span.contact(track)
+        port["span"], port["x_m"] = number, x
+        port["positive"], port["negative"] = first + contact, first + span.returns[track]
+        port["start_v"] = self.no_load[self.island[self.find(span.conductors[contact].left)]]
 
 
 def _pairs(rows: list[tuple[int, int]]) -> NDArray[np.int64]:

@@ -30,8 +30,10 @@ class Structure:
         """Return the place of entry (i, j) in the values; ground (one past the last node) has a dummy."""
         n = len(self.order)
         low, high = min(i, j), max(i, j)
-        if low == high or high == n:
-            return low if low == high else n
+        if low == high:
+            return low
+        if high == n:
+            return n
         first, last = self.column_start[low], self.column_start[low + 1]
         return int(n + 1 + first + np.searchsorted(self.row[first:last], high))
 
@@ -71,7 +73,5 @@ def _number(order: list[int], columns: list[set[int]]) -> Structure:
     starts = np.concatenate([[0], np.cumsum([len(column) for column in rows])]).astype(np.int64)
     flat = np.array([r for column in rows for r in column], dtype=np.int64)
     structure = Structure(starts, flat, np.empty(0, np.int64), order)
-    target = [
-        structure.place(column[p], column[q]) for column in rows for p in range(len(column)) for q in range(p, len(column))
-    ]
+    target = [structure.place(column[p], column[q]) for column in rows for p in range(len(column)) for q in range(p, len(column))]
     return Structure(starts, flat, np.array(target, dtype=np.int64), order)

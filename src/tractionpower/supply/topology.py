@@ -173,7 +173,8 @@ class _Bundle:
             if _return_tracks(row, line) & set(tracks)
         ]
         self.devices: list[tuple[Substation | SectionCabin | SectionPoint, list[str]]] = []
-        for device in (*supply.substations, *supply.section_cabins):
+        across: list[Substation | SectionCabin] = [*supply.substations, *supply.section_cabins]
+        for device in across:
             own = tracks_at(line, device.km) if device.tracks is None else device.tracks
             self._add_device(device, own)
         for point in supply.section_points:
@@ -244,11 +245,11 @@ class _Bundle:
                 for track in sorted(tracks & set(contacts))
             ]
             left, right = ("rail", number, low), ("rail", number, high)
-            if rail_ohm * length < SHORT_OHM:
-                rail_ohm = 0.0
+            short = rail_ohm * length < SHORT_OHM
+            if short:
                 self.join(left, right)
             returns = {conductor.name[1]: len(conductors) for conductor in conductors}
-            conductors.append(Conductor(("rail", str(number)), rail_ohm, left, right))
+            conductors.append(Conductor(("rail", str(number)), 0.0 if short else rail_ohm, left, right))
             self.topology.spans.append(Span(low, high, length, tuple(conductors), returns))
             self.topology.sections += [
                 (conductor.name[1], km, node, rail)

@@ -1,0 +1,81 @@
+"""Results in hand: tables as DataFrames, key figures, what the run says of itself."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pyarrow as pa
+
+from tractionpower.errors import UsageError
+from tractionpower.results.store import KEY_FIGURES_FILE, read_run, read_table
+
+
+@dataclass(frozen=True)
+class Results:
+    """Results of a run.
+
+    Attributes
+    ----------
+    run
+        What ``run.json`` says: status, residuals, ledgers, verdicts.
+    key_figures
+        The figures that sum the run up, each with name, value, unit, place, time, definition.
+    """
+
+    run: dict[str, Any]
+    key_figures: list[dict[str, Any]]
+    _source: dict[str, pa.Table] | Path
+
+    @classmethod
+    def open(cls, folder: str | Path) -> Results:
+        """Open a folder that a run has written.
+
+        Raises
+        ------
+        UsageError
+            If no valid results are there.
+        """
+        path = Path(folder)
+        run = read_run(path)
+        figures = json.loads((path / KEY_FIGURES_FILE).read_text(encoding="utf-8"))
+        return cls(run, figures, path)
+
+    @property
+    def tables(self) -> list[str]:
+        """Names of the tables."""
+        if isinstance(self._source, Path):
+            return sorted(Path(name).stem for name in self.run["files"] if name.endswith(".parquet"))
+        return sorted(self._source)
+
+    def table(self, name: str) -> pd.DataFrame:
+        """Return a table; its columns carry their units in their names.
+
+        Raises
+        ------
+        UsageError
+            If the run has no such table.
+        """
+        if name not in self.tables:
+            raise UsageError(f"no table {name!r}; this run has {', '.join(self.tables)}")
+        source = self._source
+        table = read_table(source, name) if isinstance(source, Path) else source[name]
+        frame: pd.DataFrame = table.to_pandas()
+        return frame
+
+    def key_figure(self, name: str, place: str = "") -> float:
+        """Return the value of a key figure, by name and, where there are several, by place.
+
+        Raises
+        ------
+        UsageError
+            If there is none, or more than one.
+        """
+        found = [f for f in self.key_figures if f["name"] == name and place in ("", f["place"])]
+        if len(found) != 1:
+            known = ", ".join(sorted({f["name"] for f in self.key_figures}))
+            raise UsageError(f"{len(found)} key figures {name!r} {place!r}; this run has {known}")
+        return float(found[0]["value"])
