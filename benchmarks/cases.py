@@ -113,9 +113,7 @@ class MovingCase:
     ) -> tuple[int, float, NDArray[np.float64]]:
         """Solve snapshots, see `driver.run_snapshots`; return iterations, worst imbalance and the ports' voltages."""
         voltage = np.empty((len(place_m), len(self.work.ports)))
-        iterations, worst = run_snapshots(
-            self.tables.network, self.work, self.spot, place_m, power_w, warm, sweeps, voltage
-        )
+        iterations, worst = run_snapshots(self.tables.network, self.work, self.spot, place_m, power_w, warm, sweeps, voltage)
         return iterations, worst, voltage
 
 

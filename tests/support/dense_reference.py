@@ -8,6 +8,8 @@ Like the solver, it lets devices less than 1 m apart share a node: a load next t
 to the first of a group of loads on the same conductor.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from tractionpower.model.limits import system_voltages
@@ -22,6 +24,14 @@ ROUNDING = 64.0 * np.finfo(float).eps
 
 class NoSolutionError(Exception):
     """The reference found no solution."""
+
+
+class Mark(NamedTuple):
+    """A place with a node but without a device."""
+
+    id: tuple
+    track: str
+    km: float
 
 
 class Groups:
@@ -156,19 +166,40 @@ class DenseNetwork:
         self._wire(last, names[1], ohm_per_km * (high - last_km))
         return at
 
+    def _pieces(self, track):
+        cuts = [cut for cut in self.cuts[track] if self._exists(track, cut)]
+        return [piece for piece in zip(cuts, cuts[1:], strict=False) if self._contact_ohm(track, 0.5 * sum(piece)) is not None]
+
+    def _piece_at(self, track, km):
+        return next((low, high) for low, high in self._pieces(track) if low <= km <= high)
+
+    def _marks(self):
+        """Return places without current beside each load, on the tracks that share its rails.
+
+        The solver records voltages there; a load less than a metre behind such a place shares its node.
+        """
+        taken = {(load.track, load.km) for load in self.supply.loads}
+        marks = {}
+        for load in self.supply.loads:
+            piece = self._piece_at(load.track, load.km)
+            for members, low, high, _ in self.rail_rows:
+                if load.track in members and low <= piece[0] and piece[1] <= high:
+                    others = [t for t in members if piece in self._pieces(t) and (t, load.km) not in taken]
+                    marks |= {(t, load.km): Mark(("mark", t, load.km), t, load.km) for t in others}
+        return list(marks.values())
+
     def _string_contact_lines(self):
         self.contact_at, self.piece = {}, {}
+        places = [*self.supply.loads, *self._marks()]
         for track in self.ends:
-            cuts = [cut for cut in self.cuts[track] if self._exists(track, cut)]
-            loads = [load for load in self.supply.loads if load.track == track]
-            for cut in cuts:
-                sides = self._sides(track, cut)
-                if len(sides) == 2 and (track, cut) not in self.separated:
-                    self.one.join(*sides)
-            for low, high in zip(cuts, cuts[1:], strict=False):
+            loads = [place for place in places if place.track == track]
+            for cut in self.cuts[track]:
+                if self._exists(track, cut):
+                    sides = self._sides(track, cut)
+                    if len(sides) == 2 and (track, cut) not in self.separated:
+                        self.one.join(*sides)
+            for low, high in self._pieces(track):
                 ohm = self._contact_ohm(track, 0.5 * (low + high))
-                if ohm is None:
-                    continue
                 here = [load for load in loads if load.id not in self.contact_at and low <= load.km <= high]
                 self.piece |= {load.id: (low, high) for load in here}
                 self.contact_at |= self._string(low, high, ohm, here, (("high", track, low), ("low", track, high)))
@@ -383,13 +414,12 @@ class DenseSolver:
         return bool(np.all(demand[free] >= ports.low[live][free]) and np.all(demand[free] <= ports.ceiling))
 
 
-def balance(network, v):
-    """Return the current that is left over in every node at the potentials `v` of all nodes [A]."""
+def balance(network, v, u):
+    """Return what is left over in every node at the potentials `v` of all nodes and the voltages `u` of all ports [A]."""
     ports = Ports(network)
     left = network.g @ v
-    for pairs, law in ((network.source, ports.sources), (network.load, ports.demands)):
-        if len(pairs):
-            i, _ = law(v[pairs[:, 0]] - v[pairs[:, 1]])
-            np.add.at(left, pairs[:, 0], i)
-            np.subtract.at(left, pairs[:, 1], i)
+    sources = len(network.source)
+    for pairs, i in ((network.source, ports.sources(u[:sources])[0]), (network.load, ports.demands(u[sources:])[0])):
+        np.add.at(left, pairs[:, 0], i)
+        np.subtract.at(left, pairs[:, 1], i)
     return left

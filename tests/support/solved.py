@@ -28,16 +28,17 @@ class Solved:
         self.solve(expect=expect)
 
     def solve(self, *, warm=False, expect=CONVERGED):
+        """Solve; ports behind the named ones only mark places."""
         self.status, self.iterations, self.worst, self.factor, self.port = solve(self.network, self.work, warm)
         if expect is not None:
             assert self.status == expect, (self.status, self.worst, self.factor)
-        self.u = dict(zip(self.names, self.work.ports["u"].tolist(), strict=True))
+        self.u = dict(zip(self.names, self.work.ports["u"].tolist(), strict=False))
         return self
 
     @property
     def i(self):
         network, work = self.network, self.work
-        currents = [port_current(network.segments, network.ports[p], work.ports[p].u) for p in range(len(self.names))]
+        currents = [port_current(network.segments, network.ports[p], work.ports[p]["u"]) for p in range(len(self.names))]
         return dict(zip(self.names, currents, strict=True))
 
     def flows(self):

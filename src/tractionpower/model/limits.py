@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
+from pydantic import Field
+
 from tractionpower.model.base import Declaration, Identifier, Real, Text
 
 Status = Literal["verified", "secondary", "recalled", "user"]
@@ -19,13 +21,13 @@ class Limit(Declaration):
     it, *recalled* from memory, *user* given by the user.
     """
 
-    system: Identifier
-    name: Identifier
-    value: Real
-    unit: Text = ""
-    meaning: Text = ""
-    source: Text = ""
-    status: Status = "user"
+    system: Identifier = Field(description="System that it holds for, for example dc3000.")
+    name: Identifier = Field(description="Name by which the program finds it.")
+    value: Real = Field(description="The value, in its unit.")
+    unit: Text = Field(default="", description="Unit, for people.")
+    meaning: Text = Field(default="", description="The limit in words.")
+    source: Text = Field(default="", description="Where it comes from.")
+    status: Status = Field(default="user", description="How the value is known.")
 
 
 class SystemVoltages(Declaration):

@@ -33,13 +33,13 @@ class Stretch(Declaration):
 class Track(Stretch):
     """A track of the line, with its own end points."""
 
-    id: Identifier
+    id: Identifier = Field(description="Identifier of the track.")
 
 
 class Station(Declaration):
     """A station, stop or other named place."""
 
-    id: Identifier
+    id: Identifier = Field(description="Identifier of the station.")
     name: Text = Field(default="", description="Name for people.")
     km: Real = field("km", "Place of the station.")
     tracks: Tracks | None = Field(default=None, description=_TRACKS)
@@ -65,7 +65,7 @@ class Curve(Stretch):
 class Tunnel(Stretch):
     """Tunnel, by its number of tracks."""
 
-    kind: Literal["single_track", "double_track"]
+    kind: Literal["single_track", "double_track"] = Field(description="Number of tracks in the tunnel.")
     tracks: Tracks | None = Field(default=None, description=_TRACKS)
 
 
@@ -74,7 +74,7 @@ class SpeedLimit(Stretch):
 
     kmh: Real = field("kmh", "Permitted speed.", above=0, at_most=600)
     tracks: Tracks | None = Field(default=None, description=_TRACKS)
-    direction: Direction | None = None
+    direction: Direction | None = Field(default=None, description="Direction it holds for; left out: both.")
     category: Text | None = Field(default=None, description="Train category that this row is for; it replaces the others.")
 
 
@@ -89,22 +89,22 @@ class TrainCurrentLimit(Stretch):
 class PowerOff(Stretch):
     """Stretch without traction current: neutral section, coasting board, lowered pantograph."""
 
-    kind: Literal["neutral", "coast", "lower_pantograph"]
+    kind: Literal["neutral", "coast", "lower_pantograph"] = Field(description="What trains do there.")
     tracks: Tracks | None = Field(default=None, description=_TRACKS)
 
 
 class TrackPoint(Declaration):
     """A place on a track."""
 
-    track: Identifier
+    track: Identifier = Field(description="The track.")
     km: Real = field("km", "Place on the track.")
 
 
 class Connection(Declaration):
     """A connection between two places of the tracks, for trains and for currents alike."""
 
-    from_: TrackPoint = Field(alias="from")
-    to: TrackPoint
+    from_: TrackPoint = Field(alias="from", description="One end.")
+    to: TrackPoint = Field(description="The other end.")
 
 
 class ChainageBreak(Declaration):
@@ -121,13 +121,17 @@ class Line(Declaration):
     format: Format = 1
     name: Text = Field(default="", description="Name for people.")
     source: Text = Field(default="", description="Where the data come from.")
-    tracks: Annotated[tuple[Track, ...], Field(min_length=1)]
-    stations: tuple[Station, ...] = ()
-    gradients: tuple[Gradient, ...] = ()
-    curves: tuple[Curve, ...] = ()
-    tunnels: tuple[Tunnel, ...] = ()
-    speed_limits: tuple[SpeedLimit, ...] = ()
-    train_current_limits: tuple[TrainCurrentLimit, ...] = ()
-    power_off: tuple[PowerOff, ...] = ()
-    connections: tuple[Connection, ...] = ()
-    chainage_breaks: tuple[ChainageBreak, ...] = ()
+    tracks: Annotated[tuple[Track, ...], Field(min_length=1, description="The tracks.")]
+    stations: tuple[Station, ...] = Field(default=(), description="Stations, stops and other named places.")
+    gradients: tuple[Gradient, ...] = Field(
+        default=(), description="Slopes; left out: level. Given: every named track is covered end to end."
+    )
+    curves: tuple[Curve, ...] = Field(default=(), description="Horizontal curves; only what exists.")
+    tunnels: tuple[Tunnel, ...] = Field(default=(), description="Tunnels; only what exists.")
+    speed_limits: tuple[SpeedLimit, ...] = Field(
+        default=(), description="Speed limits; must cover the tracks that trains run on."
+    )
+    train_current_limits: tuple[TrainCurrentLimit, ...] = Field(default=(), description="Largest train currents.")
+    power_off: tuple[PowerOff, ...] = Field(default=(), description="Stretches without traction current.")
+    connections: tuple[Connection, ...] = Field(default=(), description="Connections between places of the tracks.")
+    chainage_breaks: tuple[ChainageBreak, ...] = Field(default=(), description="Jumps of the kilometrage.")

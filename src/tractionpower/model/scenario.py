@@ -57,7 +57,7 @@ class StudyFile(Declaration):
     line: Text = Field(default="line.yaml", description="File of the line.")
     supply: Text = Field(default="supply.yaml", description="File of the supply system.")
     timetable: Text | None = Field(default=None, description="File of the timetable; left out: a network calculation.")
-    clock: Clock
+    clock: Clock = Field(description="The simulated time.")
     coupling: Literal["full", "constant_voltage"] = Field(
         default="full", description="full: trains and network in one step; constant_voltage: currents at a fixed voltage."
     )
@@ -66,7 +66,7 @@ class StudyFile(Declaration):
     )
     seed: Count = Field(default=1, ge=0, description="Seed of everything that is drawn.")
     limits: Text | None = Field(default=None, description="CSV file that overlays the shipped limits row by row.")
-    output: Output = Output()
+    output: Output = Field(default=Output(), description="What a run writes.")
 
 
 class Scenario(Declaration):

@@ -20,7 +20,7 @@ class Substation(Declaration):
     With k equal units in service the no-load voltage stays; `internal_resistance_ohm` is that of the whole plant.
     """
 
-    id: Identifier
+    id: Identifier = Field(description="Identifier of the substation.")
     km: Real = field("km", "Place of the substation.")
     no_load_voltage_v: Real = field("no_load_voltage_v", "Voltage of the busbar without load.", above=0, at_most=10_000)
     internal_resistance_ohm: Real = field(
@@ -62,7 +62,7 @@ class Substation(Declaration):
 class SectionCabin(Declaration):
     """A section cabin (paralleling post): joins contact lines of several tracks, never rails."""
 
-    id: Identifier
+    id: Identifier = Field(description="Identifier of the section cabin.")
     km: Real = field("km", "Place of the section cabin.")
     state: Literal["closed", "bypassed", "open"] = Field(
         default="closed", description="closed: all tracks tied; bypassed: each track through, no tie; open: each track cut here."
@@ -73,10 +73,10 @@ class SectionCabin(Declaration):
 class SectionPoint(Declaration):
     """A section insulator or isolator in the contact line of one track."""
 
-    id: Identifier
-    track: Identifier
+    id: Identifier = Field(description="Identifier of the section point.")
+    track: Identifier = Field(description="The track.")
     km: Real = field("km", "Place of the section point.")
-    state: Literal["open", "closed"] = "open"
+    state: Literal["open", "closed"] = Field(default="open", description="open: the contact line is cut here.")
 
 
 class ContactLine(Stretch):
@@ -103,8 +103,8 @@ class ReturnCircuit(Stretch):
 class Load(Declaration):
     """A fixed tap between contact line and rail: a depot, heating, a measured load."""
 
-    id: Identifier
-    track: Identifier
+    id: Identifier = Field(description="Identifier of the load.")
+    track: Identifier = Field(description="The track.")
     km: Real = field("km", "Place of the tap.")
     power_kw: Real | None = field("power_kw", "Power taken from the line; negative feeds back.", default=None)
     current_a: Real | None = field("current_a", "Current taken from the line; negative feeds back.", default=None)
@@ -137,9 +137,9 @@ class Supply(Declaration):
 
     format: Format = 1
     system: Identifier = Field(default="dc3000", description="System whose voltage limits hold, by the limits table.")
-    substations: tuple[Substation, ...] = ()
-    section_cabins: tuple[SectionCabin, ...] = ()
-    section_points: tuple[SectionPoint, ...] = ()
-    contact_lines: Annotated[tuple[ContactLine, ...], Field(min_length=1)]
-    return_circuit: Annotated[tuple[ReturnCircuit, ...], Field(min_length=1)]
-    loads: tuple[Load, ...] = ()
+    substations: tuple[Substation, ...] = Field(default=(), description="Traction substations.")
+    section_cabins: tuple[SectionCabin, ...] = Field(default=(), description="Section cabins (paralleling posts).")
+    section_points: tuple[SectionPoint, ...] = Field(default=(), description="Section insulators and isolators.")
+    contact_lines: Annotated[tuple[ContactLine, ...], Field(min_length=1, description="Contact lines.")]
+    return_circuit: Annotated[tuple[ReturnCircuit, ...], Field(min_length=1, description="Return conductors.")]
+    loads: tuple[Load, ...] = Field(default=(), description="Fixed taps between contact line and rail.")

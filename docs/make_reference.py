@@ -1,0 +1,103 @@
+"""Write the reference pages from the declarations: docs/inputs.md and docs/results.md."""
+
+from __future__ import annotations
+
+import types
+import typing
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, get_args, get_origin
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from pydantic_core import PydanticUndefined
+
+from tractionpower.model.limits import Limit
+from tractionpower.model.line import Line
+from tractionpower.model.scenario import StudyFile
+from tractionpower.model.supply import Supply
+from tractionpower.results.columns import TABLES
+
+HERE = Path(__file__).parent
+FILES = {"study.yaml": StudyFile, "line.yaml": Line, "supply.yaml": Supply, "limits (CSV)": Limit}
+NOTE = "<!-- made by `make docs` from the declarations; do not edit -->\n"
+SIGNS = """Parquet files in the folder of the run. Currents and powers are positive when taken from the line, and when a
+substation feeds. A row describes the step that begins at `time_s`; the sum of `power_kw` times the step is the energy.
+With `output.every_s` only the steps at that interval have rows; key figures use all of them.
+"""
+
+
+def inputs_page() -> str:
+    """Return the page of all input keys."""
+    parts = [NOTE, "# Input files\n", "Units stand in the names. A list may be the name of a CSV file instead.\n"]
+    for title, model in FILES.items():
+        parts.append(f"## {title}\n")
+        parts.append(_table(model))
+        parts += [f"### {path}\n\n{_table(part)}" for path, part in _parts(model)]
+    return "\n".join(parts)
+
+
+def results_page() -> str:
+    """Return the page of all result columns."""
+    parts = [NOTE, "# Tables of a run\n"]
+    parts.append(SIGNS)
+    for name, columns in TABLES.items():
+        parts.append(f"## {name}.parquet\n\n| column | unit | meaning |\n|---|---|---|")
+        parts += [f"| `{c.name}` | {c.quantity.unit} | {c.quantity.meaning} |" for c in columns]
+        parts.append("")
+    return "\n".join(parts)
+
+
+def _table(model: type[BaseModel]) -> str:
+    rows = ["| key | unit | allowed | default | meaning |", "|---|---|---|---|---|"]
+    for name, info in model.model_fields.items():
+        extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+        source = f" (default: {extra['source']})" if extra.get("source") else ""
+        meaning = (info.description or "") + source
+        cells = (f"`{info.alias or name}`", extra.get("unit", ""), _allowed(info), _default(info), meaning)
+        rows.append("| " + " | ".join(str(cell) for cell in cells) + " |")
+    return "\n".join(rows) + "\n"
+
+
+def _allowed(info: FieldInfo) -> str:
+    bounds = []
+    for item in info.metadata:
+        for attribute, sign in (("gt", ">"), ("ge", "≥"), ("lt", "<"), ("le", "≤")):
+            if getattr(item, attribute, None) is not None:
+                bounds.append(f"{sign} {getattr(item, attribute):g}")
+    literals = [kind for kind in _kinds(info.annotation) if get_origin(kind) is typing.Literal]
+    return ", ".join(bounds) or ", ".join(str(choice) for kind in literals for choice in get_args(kind))
+
+
+def _default(info: FieldInfo) -> str:
+    if info.default is PydanticUndefined:
+        return "required" if info.default_factory is None else ""
+    if info.default is None or info.default == () or isinstance(info.default, BaseModel):
+        return ""
+    return str(info.default)
+
+
+def _kinds(annotation: Any) -> Iterator[Any]:
+    yield annotation
+    if get_origin(annotation) in {typing.Union, types.UnionType, tuple, typing.Annotated}:
+        for inner in get_args(annotation):
+            yield from _kinds(inner)
+
+
+def _parts(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, type[BaseModel]]]:
+    for name, info in model.model_fields.items():
+        for kind in _kinds(info.annotation):
+            if isinstance(kind, type) and issubclass(kind, BaseModel):
+                path = f"{prefix}{info.alias or name}"
+                yield path, kind
+                yield from _parts(kind, path + ".")
+
+
+def main() -> None:
+    """Write both pages."""
+    (HERE / "inputs.md").write_text(inputs_page(), encoding="utf-8")
+    (HERE / "results.md").write_text(results_page(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
