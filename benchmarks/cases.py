@@ -11,9 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from driver import CYCLE_S, TRAIN_SEGMENTS, run_snapshots, run_steps
 from numpy.typing import NDArray
 
+from driver import CYCLE_S, TRAIN_SEGMENTS, find_worst_balance, run_snapshots, run_steps
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.kernels.tables import SEGMENT, Work, new_work
 from tractionpower.model.limits import Limit
@@ -102,11 +102,18 @@ class MovingCase:
     spot: tuple[int, float, NDArray[np.int64]]
     trains: Trains
 
+    @property
+    def _arrays(self) -> tuple[NDArray[np.float64], ...]:
+        return self.trains.start_m, self.trains.direction, self.trains.phase_s, self.trains.power_w
+
     def run(self, steps: int, t0: float = 0.0, solve_too: bool = True) -> tuple[int, int, float, float]:
         """Run `steps` seconds, see `driver.run_steps`."""
-        trains = self.trains
-        arrays = (trains.start_m, trains.direction, trains.phase_s, trains.power_w)
-        return run_steps(self.tables.network, self.work, self.spot, arrays, float(t0), steps, solve_too)
+        return run_steps(self.tables.network, self.work, self.spot, self._arrays, float(t0), steps, solve_too)
+
+    def worst_balance(self, steps: int, t0: float = 0.0) -> float:
+        """Return the largest imbalance of any node in `steps` seconds [A], see `driver.find_worst_balance`."""
+        network, balance = self.tables.network, np.zeros(self.tables.network.nodes + 1)
+        return find_worst_balance(network, self.work, self.tables.edges, balance, self.spot, self._arrays, float(t0), steps)
 
     def run_snapshots(
         self, place_m: NDArray[np.float64], power_w: NDArray[np.float64], warm: bool, sweeps: int = 1

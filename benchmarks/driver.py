@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tractionpower.kernels.flows import conductor_flows, skeleton_balance
 from tractionpower.kernels.jit import njit
 from tractionpower.kernels.network import solve
 from tractionpower.kernels.spans import place_ports
@@ -81,7 +82,7 @@ def move_trains(network, spot, trains, t):
 
 @njit
 def run_steps(network, work, spot, trains, t0, steps, solve_too):
-    """Move the trains every second and solve; the first step starts cold.
+    """Move the trains every second and, if asked to, solve; the first step starts cold.
 
     Returns
     -------
@@ -95,13 +96,27 @@ def run_steps(network, work, spot, trains, t0, steps, solve_too):
         move_trains(network, spot, trains, t0 + step)
         if solve_too:
             place_ports(network, work)
-            status, n, imbalance, factor, port = solve(network, work, step > 0)
+            _, n, imbalance, _, _ = solve(network, work, step > 0)
             iterations += n
-            cold += step > 0 and np.isinf(work.ports[0].before_v)
+            cold += step > 0 and np.isinf(work.ports[0].before_v)  # a cold start leaves nothing to draw a line through
             worst = max(worst, imbalance)
             for p in range(spot[0], spot[0] + trains[0].shape[0]):
                 lowest = min(lowest, work.ports[p].u)
     return iterations, cold, worst, lowest
+
+
+@njit
+def find_worst_balance(network, work, edges, balance, spot, trains, t0, steps):
+    """Solve the same steps and return the largest imbalance of any node [A], computed afresh from the potentials."""
+    worst = 0.0
+    for step in range(steps):
+        move_trains(network, spot, trains, t0 + step)
+        place_ports(network, work)
+        _, _, imbalance, _, _ = solve(network, work, step > 0)
+        _, inside = conductor_flows(network, work, balance)
+        _, ends = skeleton_balance(network, work, edges, balance)
+        worst = max(worst, imbalance, inside, ends)
+    return worst
 
 
 @njit
@@ -130,7 +145,7 @@ def run_snapshots(network, work, spot, x, p, warm, sweeps, voltage):
             for k in range(x.shape[1]):
                 set_train(network, spot, k, x[n, k], p[n, k])
             place_ports(network, work)
-            status, more, imbalance, factor, port = solve(network, work, warm and n > 0)
+            _, more, imbalance, _, _ = solve(network, work, warm and n > 0)
             iterations += more
             worst = max(worst, imbalance)
             for k in range(voltage.shape[1]):

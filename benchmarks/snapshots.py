@@ -11,9 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+
 from cases import CIRCUITS, NO_LOAD_V, SOURCE_OHM, Case, MovingCase
 from driver import CYCLE_S, FEED_BACK_FULL_V, SPEED_MPS, TRACTION_FULL_V, cycle_share
-from numpy.typing import NDArray
 
 CLEARANCE_M = 2.0
 """Trains nearer to a substation or cabin are put that far away from it, since ours lets them share its node below 1 m."""

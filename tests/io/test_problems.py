@@ -115,3 +115,9 @@ def test_found_values_are_shortened_and_escaped(problems_of_study):
     assert len(problems[0].found) < 80
     assert problems[1].found == "the key 'a\\x1b[31m'"
     assert all(str(problem).isprintable() for problem in problems)
+
+
+def test_a_misspelt_key_is_told_once(only_problem):
+    problem = only_problem({"line.yaml": "curves: [{from_km: 1, to_km: 2, radius: 400}]\n"})
+    assert (problem.code, problem.path) == ("unknown_key", "line.curves[0].radius")
+    assert "did you mean radius_m?" in problem.remedy

@@ -52,7 +52,6 @@ def test_problems_of_all_files_are_told_at_once_in_the_order_of_the_files(write_
     with pytest.raises(InputError) as caught:
         load_scenario(folder)
     assert [(problem.code, problem.place) for problem in caught.value.problems] == [
-        ("missing_key", "study.yaml:1"),
         ("out_of_bounds", "study.yaml:2"),
         ("unknown_key", "study.yaml:3"),
         ("wrong_type", "line.yaml:2"),

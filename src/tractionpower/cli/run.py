@@ -66,9 +66,11 @@ def _prepare(loaded: LoadedScenario, scenario: Scenario, folder: Path, force: bo
     writer = RunWriter(folder, study, scenario.input_hash, force=force)
     try:
         return Run(scenario, writer, study), writer
-    except InputError as error:
+    except BaseException as error:
         writer.discard()
-        raise InputError(loaded.provenance.place(error.problems)) from None
+        if isinstance(error, InputError):
+            raise InputError(loaded.provenance.place(error.problems)) from None
+        raise
 
 
 def _execute(prepared: Run, writer: RunWriter) -> Outcome:

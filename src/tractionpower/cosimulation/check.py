@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from tractionpower.alignment.checks import check_line
 from tractionpower.errors import Problem
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.base import format_time
+from tractionpower.model.scenario import Clock, Scenario
+from tractionpower.results.columns import TABLES
 from tractionpower.supply.checks import check_supply
 
 
@@ -14,19 +18,39 @@ def check_scenario(scenario: Scenario) -> list[Problem]:
         *check_line(scenario.line),
         *check_supply(scenario.supply, scenario.line, scenario.limits),
         *_check_clock(scenario),
+        *_check_output(scenario),
     ]
+
+
+def step_count(clock: Clock) -> int:
+    """Return the number of steps of a run; the last one may reach beyond the end of the clock."""
+    return int(np.ceil((clock.end - clock.start) / clock.step_s - 1e-9))
 
 
 def _check_clock(scenario: Scenario) -> list[Problem]:
-    every, step = scenario.output.every_s, scenario.clock.step_s
-    if every is None or (abs(every / step - round(every / step)) < 1e-9 and every >= step):
+    clock = scenario.clock
+    last = (step_count(clock) - 1) * clock.step_s
+    if clock.warm_up is None or clock.warm_up <= last:
         return []
-    return [
-        Problem(
-            "output_interval",
-            "output.every_s",
-            f"{every:g} s",
-            f"a whole multiple of clock.step_s, {step:g} s",
-            f"write {max(1, round(every / step)) * step:g}, or leave it out",
-        )
+    allowed = f"at most {format_time(last)}, the start of the last step"
+    return [Problem("warm_up", "clock.warm_up", format_time(clock.warm_up), allowed, "shorten it, or the step")]
+
+
+def _check_output(scenario: Scenario) -> list[Problem]:
+    every, step = scenario.output.every_s, scenario.clock.step_s
+    problems = [
+        Problem("unknown_table", f"output.tables[{k}]", repr(name), ", ".join(TABLES), "name one of these")
+        for k, name in enumerate(scenario.output.tables or ())
+        if name not in TABLES
     ]
+    if every is not None and not (abs(every / step - round(every / step)) < 1e-9 and every >= step):
+        problems.append(
+            Problem(
+                "output_interval",
+                "output.every_s",
+                f"{every:g} s",
+                f"a whole multiple of clock.step_s, {step:g} s",
+                f"write {max(1, round(every / step)) * step:g}, or leave it out",
+            )
+        )
+    return problems

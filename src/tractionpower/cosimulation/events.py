@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -24,37 +25,37 @@ class EventLog:
         self.load_of_port = {int(port): load for port, load in zip(supply.load_port, supply.loads, strict=True)}
         self.rows: list[dict[str, Any]] = []
         self.flagged_steps = 0
-        self._last: tuple[int, int] | None = None
+        self._last = (CONVERGED, -1)
 
     def add(self, time_s: NDArray[np.float64], steps: NDArray[np.void]) -> None:
         """Look at steps, records of `tractionpower.kernels.tables.STEP_RESULT`."""
-        status = steps["status"]
-        bad = np.flatnonzero(status != CONVERGED)
-        self.flagged_steps += len(bad)
-        if not len(bad) and len(steps):
-            self._last = None
-        for k in bad:
-            key = (int(status[k]), int(steps["port"][k]))
-            fresh = self._last != key or bool(k > 0 and status[k - 1] == CONVERGED)
-            self._note(float(time_s[k]), steps[k], key, fresh=fresh)
-            self._last = key
-        if len(steps) and status[-1] == CONVERGED:
-            self._last = None
+        status, port = steps["status"], steps["port"]
+        self.flagged_steps += int(np.count_nonzero(status != CONVERGED))
+        changes = np.flatnonzero((status[1:] != status[:-1]) | (port[1:] != port[:-1])) + 1
+        bounds = [0, *changes.tolist(), len(steps)]
+        for first, end in pairwise(bounds):
+            if first == end:  # no steps at all
+                continue
+            kind = (int(status[first]), int(port[first]))
+            if kind[0] != CONVERGED:
+                self._note(kind, time_s[first:end], steps[first:end])
+            self._last = kind
 
-    def _note(self, time_s: float, step: np.void, key: tuple[int, int], *, fresh: bool) -> None:
-        value = float(step["factor"] if key[0] == NOT_SERVABLE else step["worst_a"])
-        if fresh:
-            load = self.load_of_port.get(key[1])
+    def _note(self, kind: tuple[int, int], time_s: NDArray[np.float64], spell: NDArray[np.void]) -> None:
+        unserved = kind[0] == NOT_SERVABLE
+        value = float(spell["factor"].min() if unserved else spell["worst_a"].max())
+        if kind != self._last:
+            load = self.load_of_port.get(kind[1])
             self.rows.append(
                 {
-                    "time_s": time_s, "kind": KINDS[key[0]], "subject": load.id if load else "network",
+                    "time_s": float(time_s[0]), "kind": KINDS[kind[0]], "subject": load.id if load else "network",
                     "track": load.track if load else "", "position_km": load.km if load else np.nan,
-                    "value": value, "limit": 1.0 if key[0] == NOT_SERVABLE else FLAG_A, "end_s": time_s,
+                    "value": value, "limit": 1.0 if unserved else FLAG_A,
                 }
             )  # fmt: skip
         row = self.rows[-1]
-        row["end_s"] = time_s + self.step_s
-        row["value"] = (min if key[0] == NOT_SERVABLE else max)(row["value"], value)
+        row["end_s"] = float(time_s[-1]) + self.step_s
+        row["value"] = (min if unserved else max)(row["value"], value)
 
     def messages(self) -> list[str]:
         """Return all events in words."""
@@ -82,4 +83,5 @@ def message(row: dict[str, Any]) -> str:
 
 def _coded(words: list[str]) -> tuple[list[int], list[str]]:
     known = sorted(set(words))
-    return [known.index(word) for word in words], known
+    code = {word: number for number, word in enumerate(known)}
+    return [code[word] for word in words], known

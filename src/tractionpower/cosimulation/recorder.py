@@ -13,6 +13,7 @@ from tractionpower.kernels.tables import Buffers
 from tractionpower.model.base import format_time
 from tractionpower.model.limits import find_limit
 from tractionpower.model.scenario import Scenario
+from tractionpower.results.columns import TABLES
 from tractionpower.results.key_figures import ElectricLedger, Extremes, KeyFigure
 from tractionpower.results.tables import feeders_table, loads_table, make_table, substations_table
 from tractionpower.supply.characteristics import no_load_voltage
@@ -32,7 +33,7 @@ class Recorder:
         self.every = 1 if scenario.output.every_s is None else round(scenario.output.every_s / clock.step_s)
         self.figures_from_s = clock.start + (clock.warm_up or 0.0)
         wanted = scenario.output.tables
-        self.wanted = set(wanted) if wanted is not None else {"substations", "feeders", "loads", "profile", "events"}
+        self.wanted = set(TABLES if wanted is None else wanted)
         self.substation_a = Extremes(len(supply.substations))
         self.substation_w = Extremes(len(supply.substations))
         self.load_v, self.load_w = Extremes(len(supply.loads)), Extremes(len(supply.loads))

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 import pyarrow as pa
 
-from tractionpower.cosimulation.check import check_scenario
+from tractionpower.cosimulation.check import check_scenario, step_count
 from tractionpower.cosimulation.recorder import Recorder
 from tractionpower.errors import Problem, raise_errors
 from tractionpower.kernels.block import advance
@@ -22,6 +22,9 @@ from tractionpower.supply.compile import SupplyTables, compile_network
 
 BLOCK_S = 0.25
 """Wall time that a block of steps aims at, so that progress and Ctrl-C live [s]."""
+
+ROUNDING_S = 5e-7
+"""A step starts at a time of day when it starts this much before it: start + k step is rounded, times have microseconds [s]."""
 
 FIRST_BLOCK = 16
 BUFFER_BYTES = 32_000_000
@@ -87,7 +90,7 @@ class Run:
         self.warnings = tuple(problems)
         supply = compile_network(scenario.supply, scenario.line, scenario.limits)
         self.tables = compile_block(scenario, supply)
-        self.steps = _step_count(scenario)
+        self.steps = step_count(scenario.clock)
         self.recorder = Recorder(scenario, supply, writer)
         self.done = 0
         self.compile_seconds = time.perf_counter() - started
@@ -146,15 +149,10 @@ def compile_block(scenario: Scenario, supply: SupplyTables) -> BlockTables:
     sources["no_load_v"] = [no_load_voltage(substation) for substation in supply.substations]
     loads = np.zeros(len(supply.loads), LOAD)
     loads["port"] = supply.load_port
-    loads["from_s"] = [-np.inf if load.from_ is None else load.from_ for load in supply.loads]
-    loads["to_s"] = [np.inf if load.to is None else load.to for load in supply.loads]
+    loads["from_s"] = [-np.inf if load.from_ is None else load.from_ - ROUNDING_S for load in supply.loads]
+    loads["to_s"] = [np.inf if load.to is None else load.to - ROUNDING_S for load in supply.loads]
     clock = np.array([scenario.clock.start, scenario.clock.step_s])
     return BlockTables(supply.network, supply.edges, sources, loads, supply.feeder_end, supply.section_table, clock)
-
-
-def _step_count(scenario: Scenario) -> int:
-    clock = scenario.clock
-    return int(np.ceil((clock.end - clock.start) / clock.step_s - 1e-9))
 
 
 def _versions() -> dict[str, str]:

@@ -43,6 +43,10 @@ def simulate(
     except BaseException:
         writer.discard()
         raise
-    outcome = run.execute(progress)
-    writer.finish(outcome.run, outcome.key_figures)
+    try:
+        outcome = run.execute(progress)
+        writer.finish(outcome.run, outcome.key_figures)
+    except KeyboardInterrupt:
+        writer.keep_unfinished(run.outcome().run)
+        raise
     return Results.open(folder)

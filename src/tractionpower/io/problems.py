@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from tractionpower.errors import Problem
 from tractionpower.io.provenance import Loc, Mark, path_of
 from tractionpower.io.shapes import Shape
-from tractionpower.io.wording import did_you_mean, shorten, shown
+from tractionpower.io.wording import did_you_mean, nearest, shorten, shown
 from tractionpower.model.base import FORMAT
 
 
@@ -42,6 +42,11 @@ class _Fault:
         return str(self.loc[-1]) if self.loc else ""
 
     @property
+    def meant(self) -> str:
+        # The known key that this unknown one resembles: that it is missing need not be told as well.
+        return nearest(self.key, self.parent.keys if self.parent is not None else ())
+
+    @property
     def allowed(self) -> str:
         return self.shape.allowed() if self.shape is not None else ""
 
@@ -62,21 +67,16 @@ def problems_of(error: ValidationError, content: Input, silent: Collection[Loc] 
     silent
         Places that already have a problem; further errors there say nothing new.
     """
-    problems = []
-    for entry in error.errors(include_url=False):
-        loc = tuple(token for token in entry["loc"] if token != "[key]")
-        if loc in silent:
-            continue
-        fault = _Fault(
-            entry["type"],
-            loc,
-            entry["input"],
-            entry["msg"],
-            content.shape.find(loc),
-            content.shape.find(loc[:-1]) if loc else None,
-        )
-        problems.append(_problem(fault, content))
-    return problems
+    faults = [_fault(entry, content.shape) for entry in error.errors(include_url=False)]
+    misspelt = {(*fault.loc[:-1], fault.meant) for fault in faults if fault.code == "extra_forbidden"}
+    told = [fault for fault in faults if fault.loc not in silent and not (fault.code == "missing" and fault.loc in misspelt)]
+    return [_problem(fault, content) for fault in told]
+
+
+def _fault(entry: Any, shape: Shape) -> _Fault:
+    loc = tuple(token for token in entry["loc"] if token != "[key]")
+    parent = shape.find(loc[:-1]) if loc else None
+    return _Fault(entry["type"], loc, entry["input"], entry["msg"], shape.find(loc), parent)
 
 
 def in_file_order(problems: Iterable[Problem]) -> list[Problem]:

@@ -21,7 +21,7 @@ TOLERANCE_A = 1e-6
 FLAG_A = 1e-3
 """A step with a larger imbalance is flagged."""
 
-KEEP_A = 0.1 * TOLERANCE_A
+KEEP_A = 0.5 * TOLERANCE_A
 ALL = -1.0
 STEP_V = 300.0
 SMOOTH_V = 20.0

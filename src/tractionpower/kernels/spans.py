@@ -98,20 +98,34 @@ def condense(network, work):
     bool
         Whether all pivots were positive.
     """
+    condensed, condensed_b, value, node_v = work.condensed, work.condensed_b, work.value, work.node_v
+    terminals, scatter, spans = network.terminals, network.scatter, network.spans
+    if not _sweep(network, work):
+        return False
+    for s in range(spans.shape[0]):
+        if work.spans[s].ports > 0:
+            span = spans[s]
+            ends = span.right_terminals + span.left_terminals
+            for i in range(span.first_terminal, span.first_terminal + ends):
+                node_v[terminals[i]] += condensed_b[i]
+            for k in range(span.first_scatter, span.first_scatter + ends * (ends + 1) // 2):
+                value[scatter[k]] += condensed[k]
+    return True
+
+
+@njit
+def _sweep(network, work):
+    """Condense the stale spans; return whether all pivots were positive."""
     front, b, rows = work.front, work.front_b, work.row
-    ports, sides, order, conductor_work = work.ports, work.sides, work.order, work.conductors
+    ports, sides, order = work.ports, work.sides, work.order
+    conductors, conductor_work = network.conductors, work.conductors
     condensed, condensed_b = work.condensed, work.condensed_b
-    conductors = network.conductors
-    value, node_v = work.value, work.node_v
     for s in range(network.spans.shape[0]):
         span, span_work = network.spans[s], work.spans[s]
-        if span_work.ports == 0:
+        if span_work.ports == 0 or not span_work.stale:
             continue
         first, ends = span.right_terminals, span.right_terminals + span.left_terminals
         slots = ends + span.conductors
-        if not span_work.stale:
-            _scatter(network, span, ends, condensed, condensed_b, value, node_v)
-            continue
         for p in range(slots + 1):
             b[p] = 0.0
             for q in range(p + 1):
@@ -145,16 +159,7 @@ def condense(network, work):
                 condensed[k] = front[i, j]
                 k += 1
         span_work.stale = False
-        _scatter(network, span, ends, condensed, condensed_b, value, node_v)
     return True
-
-
-@njit
-def _scatter(network, span, ends, condensed, condensed_b, value, node_v):
-    for i in range(span.first_terminal, span.first_terminal + ends):
-        node_v[network.terminals[i]] += condensed_b[i]
-    for k in range(span.first_scatter, span.first_scatter + ends * (ends + 1) // 2):
-        value[network.scatter[k]] += condensed[k]
 
 
 @njit

@@ -46,6 +46,11 @@ class KeyFigure:
         }
 
 
+def add_up(total: Array, values: Array) -> Array:
+    """Return `total` plus all rows of `values`, added one after the other: the sum does not depend on how many come at a time."""
+    return np.asarray(np.cumsum(np.concatenate([total[np.newaxis], values]), axis=0)[-1])
+
+
 class Extremes:
     """Lowest, highest and mean of several series, with the time of the extremes.
 
@@ -73,8 +78,8 @@ class Extremes:
             found = values[pick, columns]
             new = better(found, best)
             best[new], when[new] = found[new], time_s[pick][new]
-        self.total += values.sum(axis=0)
-        self.squares += (values**2).sum(axis=0)
+        self.total = add_up(self.total, values)
+        self.squares = add_up(self.squares, values**2)
         self.count += len(values)
 
     @property
@@ -97,17 +102,22 @@ class ElectricLedger:
     NAMES = ("source", "regulation", "load", "conductor")
 
     def __init__(self) -> None:
-        self.energy_j = dict.fromkeys(self.NAMES, 0.0)
+        self._total = np.zeros(len(self.NAMES))
         self.worst_gap_w = self.worst_share = 0.0
 
     def add(self, steps: NDArray[np.void], step_s: float) -> None:
         """Add the results of steps, records of `tractionpower.kernels.tables.STEP_RESULT`."""
-        for name in self.NAMES:
-            self.energy_j[name] += float(steps[f"{name}_w"].sum()) * step_s
+        powers = np.stack([steps[f"{name}_w"] for name in self.NAMES], axis=1)
+        self._total = add_up(self._total, powers * step_s)
         gap = np.abs(steps["source_w"] - steps["regulation_w"] - steps["load_w"] - steps["conductor_w"])
         if gap.size:
             self.worst_gap_w = max(self.worst_gap_w, float(gap.max()))
             self.worst_share = max(self.worst_share, float((gap / (1e-9 * steps["gross_w"] + 1e-3)).max()))
+
+    @property
+    def energy_j(self) -> dict[str, float]:
+        """Energies by name [J]."""
+        return dict(zip(self.NAMES, self._total.tolist(), strict=True))
 
     @property
     def closes(self) -> bool:

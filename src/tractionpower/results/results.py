@@ -9,9 +9,10 @@ from typing import Any
 
 import pandas as pd
 import pyarrow as pa
+import pyarrow.parquet as pq
 
 from tractionpower.errors import UsageError
-from tractionpower.results.store import KEY_FIGURES_FILE, read_run, read_table
+from tractionpower.results.store import KEY_FIGURES_FILE, read_run, table_names, written_as
 
 
 @dataclass(frozen=True)
@@ -41,14 +42,14 @@ class Results:
         """
         path = Path(folder)
         run = read_run(path)
-        figures = json.loads((path / KEY_FIGURES_FILE).read_text(encoding="utf-8"))
+        figures = json.loads((path / written_as(run, KEY_FIGURES_FILE)).read_text(encoding="utf-8"))
         return cls(run, figures, path)
 
     @property
     def tables(self) -> list[str]:
         """Names of the tables."""
         if isinstance(self._source, Path):
-            return sorted(Path(name).stem for name in self.run["files"] if name.endswith(".parquet"))
+            return table_names(self.run)
         return sorted(self._source)
 
     def table(self, name: str) -> pd.DataFrame:
@@ -62,7 +63,7 @@ class Results:
         if name not in self.tables:
             raise UsageError(f"no table {name!r}; this run has {', '.join(self.tables)}")
         source = self._source
-        table = read_table(source, name) if isinstance(source, Path) else source[name]
+        table = source[name] if isinstance(source, dict) else pq.read_table(source / written_as(self.run, f"{name}.parquet"))
         frame: pd.DataFrame = table.to_pandas()
         return frame
 

@@ -1,0 +1,37 @@
+"""Compiles all kernels once, before several workers start and each would compile them: ``python -m tests.support.warm_up``."""
+
+import tempfile
+import time
+
+from tractionpower.io.limits_files import shipped_limits
+from tractionpower.model.scenario import Scenario
+
+
+def tiny_scenario() -> Scenario:
+    stretch = {"from_km": 0.0, "to_km": 2.0}
+    return Scenario.model_validate(
+        {
+            "line": {"tracks": [stretch | {"id": "1"}]},
+            "supply": {
+                "substations": [{"id": "A", "km": 0.0, "no_load_voltage_v": 3600.0, "internal_resistance_ohm": 0.12}],
+                "contact_lines": [stretch | {"resistance_ohm_per_km": 0.05}],
+                "return_circuit": [stretch | {"resistance_ohm_per_km": 0.01}],
+                "loads": [{"id": "depot", "track": "1", "km": 1.0, "power_kw": 400.0}],
+            },
+            "clock": {"start": 0.0, "end": 1.0},
+            "limits": shipped_limits(),
+        }
+    )
+
+
+def main() -> None:
+    from tractionpower.cosimulation.simulate import simulate  # noqa: PLC0415 - importing it is part of what is timed
+
+    started = time.perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        simulate(tiny_scenario(), folder)
+    print(f"kernels are compiled: {time.perf_counter() - started:.1f} s")
+
+
+if __name__ == "__main__":
+    main()
