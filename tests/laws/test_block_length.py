@@ -57,7 +57,7 @@ def test_the_run_is_no_trivial_one(whole):
     tables = fresh_tables()
     buffers = new_buffers(tables, STEPS)
     advance(tables, new_state(tables), buffers, STEPS)
-    assert len(np.unique(buffers.load_v[:, 0])) == 7  # every switch changes the network
+    assert len(np.unique(buffers.load_v[:, 0])) == 8  # every switch changes the network
     assert set(buffers.steps["status"]) == {0, 2}
 
 
@@ -83,6 +83,18 @@ def test_a_copied_state_resumes_the_run(whole, cut, astray):
     advance(fresh_tables_at(cut), kept, after, STEPS)
     joined = [a + b for a, b in zip(rows_of(before, cut), rows_of(after, STEPS - cut), strict=True)]
     assert joined == whole
+
+
+@pytest.mark.xfail(reason="the scale of the ports lies in the tables and is no part of the state", strict=True)
+def test_a_copied_state_resumes_the_run_on_tables_that_went_on(whole):
+    tables = fresh_tables()
+    state, after = new_state(tables), new_buffers(tables, STEPS)
+    advance(tables, state, new_buffers(tables, STEPS), 10)
+    kept = copy_state(state)
+    advance(tables, state, new_buffers(tables, STEPS), 50)
+    advance(tables, kept, after, 20)
+    widths = [len(rows) // STEPS for rows in whole]
+    assert rows_of(after, 10) == [rows[10 * width : 20 * width] for rows, width in zip(whole, widths, strict=True)]
 
 
 def fresh_tables_at(cut):

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -117,25 +117,27 @@ def _show(outcome: Outcome, prepared: Run) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    console = Console(highlight=False)
-    figures = {(figure["name"], figure["place"]): figure for figure in outcome.key_figures}
-    table = Table(title="Substations", title_justify="left")
-    columns = {"highest_current_a": "highest current [A]", "rms_current_a": "RMS current [A]",
-               "highest_power_kw": "highest power [kW]", "energy_kwh": "energy [kWh]"}  # fmt: skip
+    console = Console(highlight=False, markup=False, soft_wrap=True)
+    console.width = max(console.width, 110)  # a pipe or a narrow window shall not break the table
+    figures = {(figure["name"], figure["place"]): figure["value"] for figure in outcome.key_figures}
+    columns = {
+        "highest_current_a": "highest current [A]",
+        "rms_current_a": "RMS current [A]",
+        "mean_current_a": "mean current [A]",
+        "highest_power_kw": "highest power [kW]",
+        "energy_kwh": "energy [kWh]",
+    }
+    table = Table(box=None, pad_edge=False, padding=(0, 3, 0, 0))
     table.add_column("substation")
     for heading in columns.values():
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", no_wrap=True)
     for substation in prepared.scenario.supply.substations:
-        place = f"substation {substation.id}"
-        table.add_row(substation.id, *(f"{figures[name, place]['value']:.1f}" for name in columns))
+        values = (figures[name, f"substation {substation.id}"] for name in columns)
+        table.add_row(substation.id, *(f"{value:.1f}" for value in values))
     console.print(table)
+    console.print()
     for verdict in outcome.run["verdicts"]:
-        word = "met" if verdict["met"] else "VIOLATED"
-        console.print(
-            f"{verdict['name']} {verdict['value']:.1f} V at {verdict['place']}, {verdict['time']};"
-            f" limit {verdict['limit']} {verdict['limit_value']:g} V ({verdict['status']}): {word}",
-            markup=False,
-        )
+        console.print(_sentence(verdict))
     ledger = outcome.run["ledgers"]["electric"]
     closes = "closes" if ledger["closes"] else "DOES NOT CLOSE"
     console.print(
@@ -145,4 +147,10 @@ def _show(outcome: Outcome, prepared: Run) -> None:
     if outcome.run["flagged_steps"]:
         console.print(f"{outcome.run['flagged_steps']} steps are flagged, see table events:")
         for message in prepared.recorder.events.messages():
-            console.print("  " + message, markup=False)
+            console.print("  " + message)
+
+
+def _sentence(verdict: dict[str, Any]) -> str:
+    word = "met" if verdict["met"] else "VIOLATED"
+    limit = f"{verdict['limit']} {verdict['limit_value']:g} V, source status: {verdict['status']}"
+    return f"{verdict['name']} {verdict['value']:.1f} V at {verdict['place']}, {verdict['time']}: {word} ({limit})"

@@ -52,7 +52,7 @@ def cache_folder() -> Path | None:
 def is_compiled() -> bool:
     """Tell whether compiled kernels of this version lie in the cache already."""
     folder = cache_folder()
-    return folder is not None and any(folder.rglob("advance*.nbc"))
+    return folder is not None and any(folder.rglob("*.advance-*.nbc"))
 
 
 def njit(function: Callable[..., Any]) -> Any:
