@@ -142,7 +142,7 @@ def _write_branches(branch: NDArray[np.complex128], snapshots: Snapshots, k: int
 PEERS = (
     Peer("pandapower", "runpp, defaults, flat start", partial(_prepare_runpp, options=DEFAULTS)),
     Peer("pandapower", "runpp, tuned, from the results before", partial(_prepare_runpp, options=TUNED), aim=3000.0),
-    Peer("pandapower", "runpp, tuned, its DC elements", _prepare_dc_elements),
+    Peer("pandapower", "runpp, tuned, its DC elements, flat start", _prepare_dc_elements),
     Peer("pandapower", "runpp, recycled, internal branch matrix overwritten", _prepare_recycled),
     Peer("pandapower", "its Ybus and Newton alone, below the interface", _prepare_newton),
 )

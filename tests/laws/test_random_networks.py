@@ -21,9 +21,9 @@ from dense_reference import ROUNDING, DenseNetwork, DenseSolver, NoSolutionError
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from random_networks import Draw, tame_dead_loads
-from solved import LIMITS, Solved
+from solved import LIMITS, Solved, seed_network, tap
 
-from tractionpower.kernels.network import CONVERGED, NOT_SERVABLE, TOLERANCE_A
+from tractionpower.kernels.network import CONVERGED, FLAG_A, NOT_SERVABLE, TOLERANCE_A
 from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S
 from tractionpower.supply.checks import check_supply
 
@@ -71,7 +71,7 @@ def compare(seed, tally):
         tally["ambiguous"] += 1
         return
     assert ours.status == CONVERGED
-    assert ours.worst <= TOLERANCE_A + steepest(network)
+    assert ours.worst <= (FLAG_A if has_hard_ceiling(network) else TOLERANCE_A)
     u = ours.work.ports["u"][: len(live)][live]
     np.testing.assert_allclose(u[held], direct[held], rtol=0.0, atol=VOLTAGE_V)
     check_kirchhoff(network, ours)
@@ -79,12 +79,9 @@ def compare(seed, tally):
     tally["idle or dead"] += len(live) - int(held.sum())
 
 
-def steepest(network):
-    """Return what rounding of the voltage may cost at the steepest port, a hard ceiling one millivolt wide [A]."""
-    ports = Ports(network)
-    ramps = np.isfinite(ports.high)
-    slopes = np.abs(ports.p / ports.fold + ports.i)[ramps] / (ports.high[ramps] - ports.fold[ramps])
-    return ROUNDING * network.voltages.u_max2 * float(np.max(slopes, initial=0.0))
+def has_hard_ceiling(network):
+    """Tell whether a ramp one millivolt wide is so steep that rounding of a voltage costs more than the tolerance."""
+    return any(load.fold_back_from_v and load.fold_back_from_v >= network.voltages.u_max2 for load in network.loads)
 
 
 def check_kirchhoff(network, ours):
@@ -93,16 +90,17 @@ def check_kirchhoff(network, ours):
     Within 1e-6 A, but for rounding: a potential of 3600 V is known to 1e-11 V or so, and a metre of rail conducts 1e5 S.
     """
     v = our_potentials(network, ours)
-    noise = ROUNDING * np.abs(v).max(initial=0.0) * np.abs(network.g).sum(axis=1) + steepest(network)
+    noise = ROUNDING * np.abs(v).max(initial=0.0) * np.abs(network.g).sum(axis=1)
+    accepted = FLAG_A if has_hard_ceiling(network) else TOLERANCE_A
     dead = len({part for part, fed in zip(network.part, network.fed, strict=True) if not fed})
     floating = dead * BLOCKED_CONDUCTANCE_S * network.voltages.u_max2  # of the pins that hold dead parts
     ends = np.concatenate([network.source, network.load])
     shared = np.bincount(ends.ravel(), minlength=len(v))  # ports of a node, each of which balances by itself
     _, inside, worst, _ = ours.flows()
-    assert max(inside, worst) <= TOLERANCE_A * shared.max(initial=1) + noise.max(initial=0.0) + floating
+    assert max(inside, worst) <= accepted * shared.max(initial=1) + noise.max(initial=0.0) + floating
     u = ours.work.ports["u"][: len(ours.names)]
     np.testing.assert_allclose(u, v[ends[:, 0]] - v[ends[:, 1]], rtol=0.0, atol=1e-6)
-    assert np.all(np.abs(balance(network, v, u)) <= TOLERANCE_A * np.maximum(shared, 1) + noise + floating)
+    assert np.all(np.abs(balance(network, v, u)) <= accepted * np.maximum(shared, 1) + noise + floating)
 
 
 def our_potentials(network, ours):
@@ -185,8 +183,6 @@ def test_the_draws_meet_everything_that_can_be():
 
 def test_the_reference_solves_the_published_network():
     """The judge is judged: N5 of the oracles."""
-    from solved import seed_network, tap
-
     loads = [tap(f"{track}{km}", km, track=track, kw=3000.0) for track in "12" for km in (5.0, 15.0)]
     supply, line = seed_network(loads)
     network = DenseNetwork(supply, line, LIMITS)

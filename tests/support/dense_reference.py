@@ -8,6 +8,7 @@ Like the solver, it lets devices less than 1 m apart share a node: a load next t
 to the first of a group of loads on the same conductor.
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -168,7 +169,7 @@ class DenseNetwork:
 
     def _pieces(self, track):
         cuts = [cut for cut in self.cuts[track] if self._exists(track, cut)]
-        return [piece for piece in zip(cuts, cuts[1:], strict=False) if self._contact_ohm(track, 0.5 * sum(piece)) is not None]
+        return [piece for piece in pairwise(cuts) if self._contact_ohm(track, 0.5 * sum(piece)) is not None]
 
     def _piece_at(self, track, km):
         return next((low, high) for low, high in self._pieces(track) if low <= km <= high)
@@ -206,11 +207,11 @@ class DenseNetwork:
 
     def _lay_rails(self):
         self.rail_at = {}
-        for number, (tracks, row_low, row_high, ohm) in enumerate(self.rail_rows):
-            ends = min(self.ends[t][0] for t in tracks), max(self.ends[t][1] for t in tracks)
-            row_low, row_high = max(row_low, ends[0]), min(row_high, ends[1])
-            cuts = [cut for cut in self.cuts[min(tracks)] if row_low <= cut <= row_high]
-            for low, high in zip(cuts, cuts[1:], strict=False):
+        for number, (tracks, first, last, ohm) in enumerate(self.rail_rows):
+            start = max(first, min(self.ends[t][0] for t in tracks))
+            end = min(last, max(self.ends[t][1] for t in tracks))
+            cuts = [cut for cut in self.cuts[min(tracks)] if start <= cut <= end]
+            for low, high in pairwise(cuts):
                 here = [load for load in self.supply.loads if load.track in tracks and self.piece[load.id] == (low, high)]
                 names = ("rail", number, low), ("rail", number, high)
                 self.rail_at |= self._string(low, high, ohm, here, names)
@@ -231,6 +232,14 @@ class DenseNetwork:
                     rails = self._rails([track], cut)
                     for rail in rails:
                         self.one.join(rails[0], rail)
+        self._connect_substations()
+        for cabin in self.supply.section_cabins:
+            if cabin.state == "closed":
+                for track in self._tracks_of(cabin):
+                    for side in self._sides(track, cabin.km):
+                        self.one.join(("cabin", cabin.id), side)
+
+    def _connect_substations(self):
         self.busbar = {}
         for station in self.supply.substations:
             tracks = self._tracks_of(station)
@@ -244,11 +253,6 @@ class DenseNetwork:
             for track in tracks:
                 for side in self._sides(track, station.km):
                     self._wire(positive, side, station.feeder_resistance_ohm)
-        for cabin in self.supply.section_cabins:
-            if cabin.state == "closed":
-                for track in self._tracks_of(cabin):
-                    for side in self._sides(track, cabin.km):
-                        self.one.join(("cabin", cabin.id), side)
 
     def _number(self):
         supply, find = self.supply, self.one.find
@@ -272,11 +276,13 @@ class DenseNetwork:
         self.live = np.array([powered.find(int(i)) == powered.find(int(j)) for i, j in self.load], bool)
         part = [powered.find(k) for k in range(n)]
         self.fed = np.isin(part, [part[i] for i, _ in self.source])
-        self.no_load = np.array([max([s.no_load_voltage_v * s.grid_voltage_pu
-                                      for s, (i, _) in zip(self.sources, self.source, strict=True) if part[i] == p],
-                                     default=0.0) for p in part])  # fmt: skip
-        self.part = part
         self.wire_part = [whole.find(k) for k in range(n)]
+        busbars = [(self.wire_part[i], s) for s, (i, _) in zip(self.sources, self.source, strict=True)]
+        self.no_load = np.array([
+            max([s.no_load_voltage_v * s.grid_voltage_pu for p, s in busbars if p == mine], default=0.0)
+            for mine in self.wire_part
+        ])  # fmt: skip
+        self.part = part
 
     def node(self, name):
         """Return the number of a node by its name, -1 if no wire and no port touches it."""
@@ -339,8 +345,7 @@ class DenseSolver:
             incidence[k, j] -= 1.0
         self.a = incidence[:, self.free]
         self.g = network.g[np.ix_(self.free, self.free)]
-        positive = {network.wire_part[i] for i, _ in network.source}
-        self.start = np.array([network.no_load[k] if network.wire_part[k] in positive else 0.0 for k in self.free])
+        self.start = network.no_load[self.free]
 
     def currents(self, u, factor):
         """Return currents and slopes of all live ports, the demand multiplied by `factor`."""

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import io
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -96,10 +98,17 @@ def _execute(prepared: Run, writer: RunWriter) -> Outcome:
 
 
 def _write_reports(folder: Path, scenario: Scenario) -> None:
+    from tractionpower.errors import OutputError
     from tractionpower.reporting.figures import write_figures
     from tractionpower.results.results import Results
 
-    write_figures(Results.open(folder), scenario, folder / "figures")
+    results = Results.open(folder)
+    if "profile" not in results.tables:  # left out with output.tables
+        return
+    try:
+        write_figures(results, scenario, folder / "figures")
+    except OSError as error:
+        raise OutputError(f"the tables are complete, but figures cannot be written into {folder / 'figures'}: {error}") from error
 
 
 def _exit_code(outcome: Outcome, strict: bool) -> int:
@@ -117,7 +126,9 @@ def _show(outcome: Outcome, prepared: Run) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    console = Console(highlight=False, markup=False, soft_wrap=True)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # a pipe on Windows may lack letters of a name
+    console = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
     console.width = max(console.width, 110)  # a pipe or a narrow window shall not break the table
     figures = {(figure["name"], figure["place"]): figure["value"] for figure in outcome.key_figures}
     columns = {

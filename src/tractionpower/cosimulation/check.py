@@ -19,6 +19,7 @@ def check_scenario(scenario: Scenario) -> list[Problem]:
         *check_supply(scenario.supply, scenario.line, scenario.limits),
         *_check_clock(scenario),
         *_check_output(scenario),
+        *_check_connections(scenario),
     ]
 
 
@@ -54,3 +55,11 @@ def _check_output(scenario: Scenario) -> list[Problem]:
             )
         )
     return problems
+
+
+def _check_connections(scenario: Scenario) -> list[Problem]:
+    if not scenario.line.connections:
+        return []
+    remedy = "tie tracks by a substation or a section cabin where their currents shall meet"
+    found = f"{len(scenario.line.connections)} connections, which carry no current in this version"
+    return [Problem("connections_unused", "line.connections", found, remedy=remedy, severity="warning")]

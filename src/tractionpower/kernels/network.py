@@ -16,10 +16,10 @@ from tractionpower.kernels.skeleton import factor_and_solve
 from tractionpower.kernels.spans import condense, expand
 
 TOLERANCE_A = 1e-6
-"""A solution is accepted when every port balances within this current."""
+"""A solution is accepted when every port balances within this current, and so every node but the reference [A]."""
 
 FLAG_A = 1e-3
-"""A step with a larger imbalance is flagged."""
+"""A step with a larger imbalance is flagged [A]."""
 
 KEEP_A = 0.5 * TOLERANCE_A
 ALL = -1.0
@@ -239,7 +239,7 @@ def solve(network, work, warm):
         _cut_demand(ports, work.ports, middle)
         more, worst = solve_cold(network, work)
         iterations += more
-        if worst <= FLAG_A and find_unserved(ports, work.ports) < 0:
+        if worst <= 2.0 * TOLERANCE_A and find_unserved(ports, work.ports) < 0:  # just beyond the fold it is small, too
             low = middle
         else:
             high = middle

@@ -125,7 +125,7 @@ def _sweep(network, work):
         if span_work.ports == 0 or not span_work.stale:
             continue
         first, ends = span.right_terminals, span.right_terminals + span.left_terminals
-        slots = ends + span.conductors
+        slots = ends + span.fronts
         for p in range(slots + 1):
             b[p] = 0.0
             for q in range(p + 1):
@@ -233,13 +233,14 @@ def expand(network, work):
         if span_work.ports == 0:
             continue
         first, ends = span.right_terminals, span.right_terminals + span.left_terminals
-        slots = ends + span.conductors
+        slots = ends + span.fronts
         for i in range(ends):
             x[i] = node_v[terminals[span.first_terminal + i]]
         x[slots] = 0.0
         row = span_work.first_row - 1
         for c in range(span.first_conductor, span.first_conductor + span.conductors):
-            x[conductors[c].front_slot] = 0.0
+            if conductors[c].ohm_per_m > 0.0:
+                x[conductors[c].front_slot] = 0.0
             row += conductor_work[c].nodes  # every inserted node is eliminated once: when left, or at the right end
         for c in range(span.first_conductor, span.first_conductor + span.conductors):
             if conductor_work[c].nodes > 0:

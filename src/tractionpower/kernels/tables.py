@@ -22,6 +22,7 @@ SPAN = np.dtype(
         ("length_m", "f8"),
         ("first_conductor", "i8"),
         ("conductors", "i8"),
+        ("fronts", "i8"),  # conductors with resistance, which have a front slot each
         ("first_terminal", "i8"),  # into `Network.terminals`
         ("right_terminals", "i8"),  # nodes of the right end that are not among those of the left end
         ("left_terminals", "i8"),  # distinct skeleton nodes at the left end
@@ -37,11 +38,13 @@ CONDUCTOR = np.dtype(
         ("right_node", "i8"),
         ("coupling", "i8"),  # place of the pair of its ends in the skeleton's values
         ("left_slot", "i8"),
-        ("front_slot", "i8"),
+        ("front_slot", "i8"),  # NO_SLOT without resistance
         ("right_slot", "i8"),
     ]
 )
 """One conductor of one span. Slots are its rows in the frontal matrix of the span sweep."""
+
+NO_SLOT = -1
 
 PORT = np.dtype(
     [
@@ -178,7 +181,7 @@ def new_work(network: Network) -> Work:
     slots = 1
     if len(network.spans):
         spans = network.spans
-        slots = int(np.max(spans["left_terminals"] + spans["right_terminals"] + spans["conductors"])) + 1
+        slots = int(np.max(spans["left_terminals"] + spans["right_terminals"] + spans["fronts"])) + 1
     rows = 2 * ports + len(network.conductors) + 1
     order = np.flatnonzero(network.ports["span"] >= 0)
     work = Work(

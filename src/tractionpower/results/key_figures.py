@@ -110,9 +110,10 @@ class ElectricLedger:
         powers = np.stack([steps[f"{name}_w"] for name in self.NAMES], axis=1)
         self._total = add_up(self._total, powers * step_s)
         gap = np.abs(steps["source_w"] - steps["regulation_w"] - steps["load_w"] - steps["conductor_w"])
+        gap[np.isnan(gap)] = np.inf  # not a number must not pass for a balance
         if gap.size:
             self.worst_gap_w = max(self.worst_gap_w, float(gap.max()))
-            self.worst_share = max(self.worst_share, float((gap / (1e-9 * steps["gross_w"] + 1e-3)).max()))
+            self.worst_share = max(self.worst_share, float((gap / (1e-9 * np.nan_to_num(steps["gross_w"]) + 1e-3)).max()))
 
     @property
     def energy_j(self) -> dict[str, float]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, CONDUCTOR, EDGE, PORT, SECTION, SEGMENT, SPAN, Network
+from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, CONDUCTOR, EDGE, NO_SLOT, PORT, SECTION, SEGMENT, SPAN, Network
 from tractionpower.model.limits import Limit, SystemVoltages, system_voltages
 from tractionpower.model.line import Line
 from tractionpower.model.supply import Load, Substation, Supply
@@ -183,19 +183,20 @@ class _Compiler:
         self.first_conductor: list[int] = []
         for span in self.topology.spans:
             left, right = self._terminals(span)
-            ends, width = right + left, len(span.conductors)
+            ends = right + left
             slots = {node: k for k, node in enumerate(ends)}
-            ground_slot = len(ends) + width
-            spans.append((span.length_m, len(conductors), width, len(terminals), len(right), len(left), len(scatter)))
             self.first_conductor.append(len(conductors))
-            for k, conductor in enumerate(span.conductors):
+            front = len(ends)  # fronts come behind the ends, ground behind the fronts
+            ground_slot = front + sum(conductor.ohm_per_m > 0.0 for conductor in span.conductors)
+            for conductor in span.conductors:
                 i, j = self.node(conductor.left), self.node(conductor.right)
-                conductors.append(
-                    (
-                        conductor.ohm_per_m, i, j, self.structure.place(i, j),
-                        slots.get(i, ground_slot), len(ends) + k, slots.get(j, ground_slot),
-                    )
-                )  # fmt: skip
+                ohm = conductor.ohm_per_m
+                left_slot, right_slot = slots.get(i, ground_slot), slots.get(j, ground_slot)
+                place = self.structure.place(i, j)
+                conductors.append((ohm, i, j, place, left_slot, front if ohm > 0.0 else NO_SLOT, right_slot))
+                front += ohm > 0.0
+            sizes = (len(span.conductors), front - len(ends), len(terminals), len(right), len(left), len(scatter))
+            spans.append((span.length_m, self.first_conductor[-1], *sizes))
             terminals += ends
             scatter += [self.structure.place(ends[i], ends[j]) for i in range(len(ends)) for j in range(i + 1)]
         return (

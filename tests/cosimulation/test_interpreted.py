@@ -1,0 +1,51 @@
+"""Tiny runs that also pass when numba compiles nothing, and mean the same: ``NUMBA_DISABLE_JIT=1 pytest -m interpreted``."""
+
+import numpy as np
+import pytest
+from small_studies import load, make_scenario, run_in_memory, station
+
+pytestmark = pytest.mark.interpreted
+
+BYPASSED = [{"id": "C", "km": 10.0, "state": "bypassed"}]
+
+
+def voltages(scenario):
+    results, outcome, _ = run_in_memory(scenario)
+    return results.table("loads").pivot_table(index="time_s", columns="load", values="voltage_v", observed=True), outcome
+
+
+@pytest.mark.parametrize(("state", "expected"), [("closed", 3247.5), ("bypassed", 3060.0)])
+def test_one_train(state, expected):
+    cabins = [{"id": "C", "km": 10.0, "state": state}]
+    found, outcome = voltages(make_scenario(load("x", 10.0, current_a=1500.0), section_cabins=cabins, clock={"end": 2.0}))
+    np.testing.assert_allclose(found["x"], expected, atol=1e-3)
+    assert outcome.run["status"] == "complete"
+    assert outcome.run["ledgers"]["electric"]["closes"]
+
+
+def test_power_by_time_of_day():
+    loads = [load("x", 5.0), load("y", 15.0, "2", **{"from": 1.0, "to": 2.0})]
+    found, outcome = voltages(make_scenario(*loads, clock={"end": 4.0}))
+    assert found["x"].iloc[1] < found["x"].iloc[0]
+    assert found["x"].iloc[0] == found["x"].iloc[2] == found["x"].iloc[3]
+    assert outcome.run["worst_residual_a"] < 1e-6
+
+
+def test_feeding_back_with_rectifiers_that_block():
+    found, outcome = voltages(make_scenario(load("x", 5.0, power_kw=-5000.0), load("y", 15.0, power_kw=900.0), clock={"end": 2.0}))
+    assert found["x"].between(3800.0, 3900.0).all()
+    assert outcome.run["status"] == "complete"
+
+
+def test_a_demand_that_cannot_be_served():
+    _, outcome = voltages(
+        make_scenario(load("x", 10.0, power_kw=9500.0, limits="none"), section_cabins=BYPASSED, clock={"end": 1.0})
+    )
+    assert outcome.run["status"] == "flagged"
+
+
+def test_feeders_and_a_busbar_alone():
+    stations = [station("A", 0.0, feeder_resistance_ohm=0.01), station("M", 8.0, state="rectifiers_out"), station("B", 20.0)]
+    found, outcome = voltages(make_scenario(load("x", 5.0), substations=stations, clock={"end": 1.0}))
+    assert 3000.0 < found["x"].iloc[0] < 3600.0
+    assert outcome.run["ledgers"]["electric"]["closes"]

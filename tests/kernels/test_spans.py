@@ -1,0 +1,166 @@
+"""One span with random ports, condensed onto its ends, against a dense Schur complement."""
+
+import numpy as np
+import pytest
+
+from tractionpower.kernels.spans import condense, expand, place_ports
+from tractionpower.kernels.tables import CONDUCTOR, PORT, SEGMENT, SPAN, Network, new_work
+from tractionpower.supply.ordering import order_nodes
+
+SEGMENTS = np.array([(-np.inf, 0.0, 0.0, 0.0)], SEGMENT)
+
+
+def make_span(rng, width, count, *, rail_ohm=1e-5):
+    """Return a network of one span whose conductors run between nodes of their own; the last right end is ground."""
+    length = float(rng.uniform(500.0, 5000.0))
+    ohm = [*rng.uniform(2e-5, 1e-4, width - 1), rail_ohm]
+    n = 2 * width - 1
+    structure = order_nodes(n, [list(range(n + 1))])
+    rank = {node: k for k, node in enumerate(structure.order)} | {n: n}
+    ends = [(rank[c], rank[c] if ohm[c] == 0.0 else rank[width + c] if width + c < n else n) for c in range(width)]
+    left = sorted({a for a, _ in ends} - {n})
+    right = sorted({b for _, b in ends} - {n} - set(left))
+    terminals = right + left
+    slot = {node: k for k, node in enumerate(terminals)}
+    ground = len(terminals) + width
+    conductors = np.array(
+        [
+            (ohm[c], a, b, structure.place(a, b), slot.get(a, ground), len(terminals) + c, slot.get(b, ground))
+            for c, (a, b) in enumerate(ends)
+        ],
+        CONDUCTOR,
+    )
+    scatter = [structure.place(terminals[i], terminals[j]) for i in range(len(terminals)) for j in range(i + 1)]
+    spans = np.array([(length, 0, width, 0, len(right), len(left), 0)], SPAN)
+    ports = np.zeros(count, PORT)
+    for port in ports:
+        positive, negative = rng.choice(width, 2, replace=False)
+        port["positive"], port["negative"], port["x_m"] = positive, negative, rng.uniform(0.0, length)
+        if rng.random() < 0.3:
+            port["x_m"] = rng.choice([0.0, 0.4, length - 0.3, length, *ports["x_m"]])
+        port["segments"], port["scale"] = 1, 1.0
+    base = np.zeros(n + 1 + len(structure.row))
+    network = Network(
+        spans, conductors, ports, SEGMENTS, np.array(terminals), np.array(scatter),
+        structure.column_start, structure.row, structure.target, base,
+    )  # fmt: skip
+    return network, structure, ends
+
+
+def dense(network, work, ends):
+    """Return the nodal matrix and currents of the span with all its nodes, and the two nodes of every port."""
+    n, span = network.nodes, network.spans[0]
+    wires, nodes, count = [], np.zeros((len(network.ports), 2), int), n + 1
+    for c, (left, right) in enumerate(ends):
+        ohm, length = float(network.conductors["ohm_per_m"][c]), float(span["length_m"])
+        last, last_x = left, 0.0
+        for p in np.argsort(network.ports["x_m"], kind="stable"):
+            for side, name in enumerate(("positive", "negative")):
+                if network.ports[name][p] != c:
+                    continue
+                x = float(network.ports["x_m"][p])
+                if ohm == 0.0 or x < 1.0:
+                    nodes[p, side] = left
+                elif length - x < 1.0:
+                    nodes[p, side] = right
+                else:
+                    if last == left or x - last_x >= 1.0:
+                        wires.append((last, count, 1.0 / (ohm * (x - last_x))))
+                        last, last_x, count = count, x, count + 1
+                    nodes[p, side] = last
+        if ohm > 0.0:
+            wires.append((last, right, 1.0 / (ohm * (length - last_x))))
+    g, b = np.zeros((count, count)), np.zeros(count)
+    for i, j, s in [*wires, *((i, j, work.ports["g"][p]) for p, (i, j) in enumerate(nodes))]:
+        g[i, i] += s
+        g[j, j] += s
+        g[i, j] -= s
+        g[j, i] -= s
+    for p, (i, j) in enumerate(nodes):
+        b[i] -= work.ports["j"][p]
+        b[j] += work.ports["j"][p]
+    return g, b, nodes
+
+
+def prepare(seed, width, *, sign=1.0, **more):
+    rng = np.random.default_rng(seed)
+    network, structure, ends = make_span(rng, width, int(rng.integers(1, 12)), **more)
+    work = new_work(network)
+    place_ports(network, work)
+    work.ports["g"] = sign * rng.uniform(0.0, 2.0, len(network.ports))
+    work.ports["j"] = rng.normal(size=len(network.ports)) * 1000.0
+    work.value[:] = work.step_base
+    work.node_v[:] = 0.0
+    return network, work, structure, ends, rng
+
+
+@pytest.mark.parametrize("width", [2, 3, 4, 5])
+@pytest.mark.parametrize("seed", range(12))
+def test_condensed_and_expanded(seed, width):
+    network, work, structure, ends, rng = prepare(seed, width)
+    assert condense(network, work)
+    g, b, nodes = dense(network, work, ends)
+    n = network.nodes
+    inner = np.arange(n + 1, len(g))
+    schur, right = g[: n + 1, : n + 1], b[: n + 1]
+    if len(inner):
+        back = np.linalg.solve(g[np.ix_(inner, inner)], np.column_stack([g[inner, : n + 1], b[inner]]))
+        schur = schur - g[: n + 1, inner] @ back[:, :-1]
+        right = right - g[: n + 1, inner] @ back[:, -1]
+    ours = np.array([[work.value[structure.place(i, j)] for j in range(n)] for i in range(n)])
+    scale = np.abs(schur).max()
+    np.testing.assert_allclose(ours, schur[:n, :n], rtol=0.0, atol=1e-11 * scale)
+    np.testing.assert_allclose(work.node_v[:n], right[:n], rtol=1e-9, atol=1e-7)
+
+    work.node_v[:n] = v = rng.normal(size=n) * 1000.0
+    expand(network, work)
+    x = np.zeros(len(g))
+    x[:n] = v
+    if len(inner):
+        x[inner] = np.linalg.solve(g[np.ix_(inner, inner)], b[inner] - g[np.ix_(inner, np.arange(n))] @ v)
+    np.testing.assert_allclose(work.ports["u_next"], x[nodes[:, 0]] - x[nodes[:, 1]], rtol=1e-9, atol=1e-7)
+    np.testing.assert_allclose(work.sides["node_v"], x[nodes], rtol=1e-9, atol=1e-7)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_fresh_span_is_not_swept_again(seed):
+    network, work, *_ = prepare(seed, 3)
+    assert condense(network, work)
+    value, node_v = work.value.copy(), work.node_v.copy()
+    assert not work.spans["stale"][0]
+    work.value[:], work.node_v[:] = work.step_base, 0.0
+    assert condense(network, work)
+    np.testing.assert_array_equal(work.value, value)
+    np.testing.assert_array_equal(work.node_v, node_v)
+
+
+def test_rails_without_resistance():
+    network, work, _, ends, rng = prepare(5, 3, rail_ohm=0.0)
+    assert condense(network, work)
+    g, b, nodes = dense(network, work, ends)
+    n = network.nodes
+    work.node_v[:n] = v = rng.normal(size=n) * 1000.0
+    expand(network, work)
+    inner = np.arange(n + 1, len(g))
+    x = np.zeros(len(g))
+    x[:n] = v
+    x[inner] = np.linalg.solve(g[np.ix_(inner, inner)], b[inner] - g[np.ix_(inner, np.arange(n))] @ v)
+    np.testing.assert_allclose(work.ports["u_next"], x[nodes[:, 0]] - x[nodes[:, 1]], rtol=1e-9, atol=1e-7)
+
+
+def test_a_strongly_falling_port_is_told():
+    network, work, *_ = prepare(1, 3, sign=-1.0)
+    network.ports["x_m"] = np.linspace(100.0, 400.0, len(network.ports))
+    work.ports["g"] = -1e4
+    place_ports(network, work)
+    assert not condense(network, work)
+
+
+def test_ports_are_sorted_by_place():
+    network, work, *_ = prepare(2, 4)
+    rng = np.random.default_rng(0)
+    for _ in range(5):
+        network.ports["x_m"] = rng.uniform(0.0, float(network.spans["length_m"][0]), len(network.ports))
+        place_ports(network, work)
+        assert np.all(np.diff(network.ports["x_m"][work.order]) >= 0.0)
+        assert work.spans["ports"][0] == len(network.ports)
