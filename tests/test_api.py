@@ -54,7 +54,7 @@ def test_a_scenario_with_errors_is_not_simulated_and_leaves_nothing(tmp_path):
     wrong = tp.change(tp.load("two-substations"), ["supply.substations[A].km=-1"])
     assert tp.check(wrong)
     for folder in (None, tmp_path / "deep" / "out"):
-        with pytest.raises(tp.InputError, match="supply.substations"):
+        with pytest.raises(tp.InputError, match=r"supply.substations"):
             tp.simulate(wrong, folder)
     assert list(tmp_path.iterdir()) == []
 

@@ -222,7 +222,9 @@ def test_a_demand_that_cannot_be_served(tmp_path, small, capsys):
     change = "supply.loads[train].power_kw=20000"
     assert run(small, "--set", change) == 3
     told = capsys.readouterr()
-    assert re.search(r"00:00:00 to 00:01:00: the demand cannot be served, first at train \(track 1, km 10\); \d\d\.\d+ %", told.out)
+    assert re.search(
+        r"00:00:00 to 00:01:00: the demand cannot be served, first at train \(track 1, km 10\); \d\d\.\d+ %", told.out
+    )
     assert "60 steps are flagged" in told.out
     results = Results.open(tmp_path / "reports" / "small")
     assert results.run["status"] == "flagged"

@@ -32,7 +32,9 @@ def test_power_by_time_of_day():
 
 
 def test_feeding_back_with_rectifiers_that_block():
-    found, outcome = voltages(make_scenario(load("x", 5.0, power_kw=-5000.0), load("y", 15.0, power_kw=900.0), clock={"end": 2.0}))
+    found, outcome = voltages(
+        make_scenario(load("x", 5.0, power_kw=-5000.0), load("y", 15.0, power_kw=900.0), clock={"end": 2.0})
+    )
     assert found["x"].between(3800.0, 3900.0).all()
     assert outcome.run["status"] == "complete"
 

@@ -56,8 +56,10 @@ def test_n7_with_rectifiers():
 
 @pytest.mark.parametrize(
     ("cabin", "km", "ohm"),
-    [("closed", 2, 0.191596), ("closed", 5, 0.264920), ("closed", 10, 0.235), ("bypassed", 2, 0.196596), ("bypassed", 5, 0.296170),
-     ("bypassed", 10, 0.36)],
+    [
+        ("closed", 2, 0.191596), ("closed", 5, 0.264920), ("closed", 10, 0.235),
+        ("bypassed", 2, 0.196596), ("bypassed", 5, 0.296170), ("bypassed", 10, 0.36),
+    ],
 )  # fmt: skip
 def test_source_resistance(cabin, km, ohm):
     solved = Solved(*seed_network([tap("T", float(km), ampere=1000.0)], cabin))
@@ -151,9 +153,9 @@ def test_the_low_solution_exists_and_a_warm_start_there_is_refused():
     solved = Solved(*folded())
     ohm = 0.05 * 3000.0 * 0.05 * 3000.0 / 2.5e6
     work = low_start(solved)
-    for _ in range(200):  # plain fixed point from a short circuit: both loads as resistances
-        current = 3600.0 / (0.12 + 0.36 + ohm)
-        work.ports["u"][2:] = current * ohm
+    # On this line two like loads at 6 and 14 km draw two like currents, each past 0.12 ohm and 6 km.
+    current = 3600.0 / (0.12 + 0.36 + ohm)
+    work.ports["u"][2:] = current * ohm
     assert work.ports["u"][2] < 150.0
     work.ports["u"][:2] = 3600.0 - 0.12 * current
     assert solve_warm(solved.network, work)[0] == 0

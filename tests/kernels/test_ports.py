@@ -1,5 +1,7 @@
 """Characteristics by segments: currents, slopes, kinks and tangents."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from solved import LIMITS, Solved, single_line, tap
@@ -76,7 +78,7 @@ def test_a_rectifier_blocks_and_a_two_way_source_does_not():
 )  # fmt: skip
 def test_characteristics_are_continuous_at_their_breaks(rows):
     segments, _ = port(rows)
-    for before, after in zip(segments[:-1], segments[1:], strict=True):
+    for before, after in pairwise(segments):
         u = float(after["from_v"])
         left, right = (float(s["a"] + s["b"] * u + (s["c"] / u if s["c"] else 0.0)) for s in (before, after))
         assert right == pytest.approx(left, rel=1e-6, abs=2e-6)

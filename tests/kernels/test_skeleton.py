@@ -1,5 +1,7 @@
 """LDL^T with a structure made beforehand against numpy."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -17,7 +19,7 @@ def draw(seed, shift=0.0):
     matrix = np.zeros((n + 1, n + 1))
     value = np.zeros(n + 1 + len(structure.row))
     for clique in cliques:
-        for a, b in zip(clique, clique[1:], strict=False):
+        for a, b in pairwise(clique):
             i, j, s = rank[a], rank[b], float(rng.uniform(0.1, 50.0))
             matrix[[i, j, i, j], [i, j, j, i]] += [s, s, -s, -s]
             value[[i, j]] += s

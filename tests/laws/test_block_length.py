@@ -85,7 +85,6 @@ def test_a_copied_state_resumes_the_run(whole, cut, astray):
     assert joined == whole
 
 
-@pytest.mark.xfail(reason="the scale of the ports lies in the tables and is no part of the state", strict=True)
 def test_a_copied_state_resumes_the_run_on_tables_that_went_on(whole):
     tables = fresh_tables()
     state, after = new_state(tables), new_buffers(tables, STEPS)

@@ -1,5 +1,6 @@
 """Rows, writers and finished folders of a tiny made-up run."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -39,7 +40,7 @@ def write_run(folder, rows):
 
     def write(cuts=(0, 10), voltage=3000.0, study="study", **more):
         writer = RunWriter(folder, study, "c0ffee" * 10, **more)
-        for first, end in zip(cuts[:-1], cuts[1:], strict=True):
+        for first, end in itertools.pairwise(cuts):
             writer.append("loads", rows(first, end, voltage))
         return writer.finish({"format": 1, "status": "complete", "study": study, "steps": cuts[-1]}, FIGURES)
 

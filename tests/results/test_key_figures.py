@@ -1,5 +1,7 @@
 """Extremes and ledgers against what a few lines of numpy say of all rows at once."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -14,7 +16,7 @@ CUTS = st.lists(st.integers(0, 40), max_size=6)
 
 def pieces(rows, cuts):
     bounds = [0, *sorted(min(cut, rows) for cut in cuts), rows]
-    return list(zip(bounds[:-1], bounds[1:], strict=True))
+    return list(itertools.pairwise(bounds))
 
 
 @settings(deadline=None, derandomize=True)

@@ -142,7 +142,7 @@ def test_what_was_not_begun_leaves_no_trace(tmp_path):
 def test_a_folder_of_another_study_is_refused(folder, write_run):
     write_run()
     before = contents(folder)
-    with pytest.raises(UsageError, match="another study \\('study', not 'other'\\).*--force"):
+    with pytest.raises(UsageError, match=r"another study \('study', not 'other'\).*--force"):
         RunWriter(folder, "other", HASH)
     assert contents(folder) == before
     write_run(study="other", force=True)
@@ -162,7 +162,7 @@ def test_a_folder_with_an_unreadable_run_is_refused(folder, text):
 def test_a_folder_with_other_files_is_refused(folder):
     folder.mkdir(parents=True)
     (folder / "thesis.docx").write_bytes(b"years of work")
-    with pytest.raises(UsageError, match="no results of a run.*--force"):
+    with pytest.raises(UsageError, match=r"no results of a run.*--force"):
         RunWriter(folder, "study", HASH)
     assert [path.name for path in folder.iterdir()] == ["thesis.docx"]
     RunWriter(folder, "study", HASH, force=True).finish({"study": "study"}, [])
@@ -206,7 +206,7 @@ def test_a_full_disk_while_the_run_lasts(folder, write_run, rows, monkeypatch):
         fail_with(errno.ENOSPC)()
 
     monkeypatch.setattr(pq, "write_table", fill_up)
-    with pytest.raises(OutputError, match="the disk is full; make room and run again. Earlier results there are unharmed"):
+    with pytest.raises(OutputError, match=r"the disk is full; make room and run again. Earlier results there are unharmed"):
         writer.append("loads", rows(3, 6))
     assert before.items() <= contents(folder).items()
     assert not list(folder.rglob("*.tmp"))

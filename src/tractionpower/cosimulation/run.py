@@ -151,7 +151,6 @@ def compile_block(scenario: Scenario, supply: SupplyTables) -> BlockTables:
     loads["port"] = supply.load_port
     loads["from_s"] = [-np.inf if load.from_ is None else load.from_ - ROUNDING_S for load in supply.loads]
     loads["to_s"] = [np.inf if load.to is None else load.to - ROUNDING_S for load in supply.loads]
-    supply.network.ports["scale"][supply.load_port] = 0.0  # a run starts with all loads off, as `new_state` has them
     clock = np.array([scenario.clock.start, scenario.clock.step_s])
     return BlockTables(supply.network, supply.edges, sources, loads, supply.feeder_end, supply.section_table, clock)
 

@@ -38,6 +38,7 @@ def advance(tables, state, buffers, until_step):
     """
     progress = state.progress[0]
     row = 0
+    _restore_loads(tables, state)
     while progress.step < until_step:
         if row == buffers.steps.shape[0]:
             return row, BUFFER_FULL
@@ -50,6 +51,13 @@ def advance(tables, state, buffers, until_step):
         progress.step += 1
         row += 1
     return row, DONE
+
+
+@njit
+def _restore_loads(tables, state):
+    """Write what the state says into the tables, which another run may have used since."""
+    for k in range(tables.loads.shape[0]):
+        tables.network.ports[tables.loads[k].port].scale = state.result[0].factor if state.load_on[k] else 0.0
 
 
 @njit
