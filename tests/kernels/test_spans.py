@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tractionpower.kernels.spans import condense, expand, place_ports
-from tractionpower.kernels.tables import CONDUCTOR, PORT, SEGMENT, SPAN, Network, new_work
+from tractionpower.kernels.tables import CONDUCTOR, NO_SLOT, PORT, SEGMENT, SPAN, Network, new_work
 from tractionpower.supply.ordering import order_nodes
 
 SEGMENTS = np.array([(-np.inf, 0.0, 0.0, 0.0)], SEGMENT)
@@ -22,16 +22,18 @@ def make_span(rng, width, count, *, rail_ohm=1e-5):
     right = sorted({b for _, b in ends} - {n} - set(left))
     terminals = right + left
     slot = {node: k for k, node in enumerate(terminals)}
-    ground = len(terminals) + width
-    conductors = np.array(
-        [
-            (ohm[c], a, b, structure.place(a, b), slot.get(a, ground), len(terminals) + c, slot.get(b, ground))
-            for c, (a, b) in enumerate(ends)
-        ],
-        CONDUCTOR,
-    )
+    fronts = np.cumsum([o > 0.0 for o in ohm]) - 1 + len(terminals)
+    ground = int(fronts[-1]) + 1
+    conductors = np.zeros(width, CONDUCTOR)
+    for c, (a, b) in enumerate(ends):
+        conductors[c] = (
+            ohm[c], a, b, structure.place(a, b),
+            slot.get(a, ground), fronts[c] if ohm[c] > 0.0 else NO_SLOT, slot.get(b, ground),
+        )  # fmt: skip
     scatter = [structure.place(terminals[i], terminals[j]) for i in range(len(terminals)) for j in range(i + 1)]
-    spans = np.array([(length, 0, width, 0, len(right), len(left), 0)], SPAN)
+    spans = np.zeros(1, SPAN)
+    spans["length_m"], spans["conductors"], spans["fronts"] = length, width, np.count_nonzero(ohm)
+    spans["right_terminals"], spans["left_terminals"] = len(right), len(left)
     ports = np.zeros(count, PORT)
     for port in ports:
         positive, negative = rng.choice(width, 2, replace=False)

@@ -1,7 +1,8 @@
 """Snapshots of loop circuits against the DC elements of pandapower, an independent program.
 
-pandapower knows no diodes and no fold-back, so sources conduct both ways, have one no-load voltage and stand behind their
-resistance (a line), and loads are constant powers inside their range. Its currents return through ideal ground: the rails have no resistance.
+pandapower knows no diodes and no fold-back, so sources conduct both ways, have one no-load voltage and stand behind
+their resistance (a line), and loads are constant powers inside their range. Its currents return through ideal ground:
+the rails have no resistance.
 """
 
 from itertools import pairwise

@@ -127,6 +127,7 @@ def solve_cold(network, work):
         stalled = 0 if worst < 0.5 * best else stalled + 1
         best = min(best, worst)
         if iteration > 0 and (worst <= TOLERANCE_A or (worst <= FLAG_A and stalled > 3)):
+            _recover_potentials(network, work)
             return iteration, worst
         share = 1.0
         while not solve_linear(network, work):
@@ -135,7 +136,23 @@ def solve_cold(network, work):
             share = 0.5 * share if share > 0.01 else 0.0
             linearise(network, work, share, ALL)
         _descend(segments, ports, work.ports)
+    _recover_potentials(network, work)
     return COLD_ITERATIONS, worst
+
+
+@njit
+def _recover_potentials(network, work):
+    """Compute the node potentials that belong to the port voltages, after a step that may have been shortened.
+
+    Voltages and currents of the ports are those of the linear network, whatever conductance stands for a port.
+    """
+    for p in range(network.ports.shape[0]):
+        w = work.ports[p]
+        w.g = 1.0
+        w.j = w.i - w.u
+        if network.ports[p].span >= 0:
+            work.spans[network.ports[p].span].stale = True
+    solve_linear(network, work)
 
 
 @njit

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,10 +16,9 @@ from tractionpower.supply.characteristics import (
     Segments,
     floor_voltage,
     load_segments,
-    no_load_voltage,
     source_segments,
 )
-from tractionpower.supply.ordering import Structure, order_nodes
+from tractionpower.supply.numbering import number_nodes
 from tractionpower.supply.topology import Feeder, Node, Span, Topology, build_topology
 
 CEILING_FACTOR = 5.0
@@ -79,13 +77,14 @@ class _Compiler:
         self.topology: Topology = build_topology(supply, line)
         self.substations = tuple(sorted(supply.substations, key=lambda substation: substation.id))
         self.loads = tuple(sorted(supply.loads, key=lambda load: load.id))
-        self.sources = [substation for substation in self.substations if substation.state == "in_service"]
-        self.sources = [substation for substation in self.sources if substation.id in self.topology.busbars]
+        in_service = [substation for substation in self.substations if substation.state == "in_service"]
+        self.sources = [substation for substation in in_service if substation.id in self.topology.busbars]
         self.find = self.topology.nodes.find
         self.probes = self._probes()
+        self.nodes = number_nodes(self.topology, self.sources)
+        self.structure = self.nodes.structure
 
     def compile(self) -> SupplyTables:
-        self._number_nodes()
         spans, conductors, terminals, scatter = self._span_tables()
         ports, segments = self._port_tables()
         network = Network(
@@ -123,40 +122,10 @@ class _Compiler:
 
     def node(self, node: Node) -> int:
         """Return the number of a node: its rank in the elimination, or ground."""
-        return self.number[self.find(node)]
+        return self.nodes.number[self.find(node)]
 
-    def _number_nodes(self) -> None:
-        topology, find = self.topology, self.find
-        wires = [(find(c.left), find(c.right)) for span in topology.spans for c in span.conductors]
-        wires += [(find(a), find(b)) for a, b, _ in topology.edges]
-        buses = {s.id: (find(b.positive), find(b.negative)) for s in self.sources if (b := topology.busbars[s.id])}
-        others = [(find(b.positive), find(b.negative)) for b in topology.busbars.values()]
-        nodes = sorted({node for pair in wires + others for node in pair}, key=repr)
-        crossings = [(find(c.left), find(span.conductors[span.returns[c.name[1]]].left))
-                     for span in topology.spans for c in span.conductors if c.name[0] == "contact"]  # fmt: skip
-        islands = _components(nodes, wires + list(buses.values()))
-        wired = _components(nodes, wires)  # joined by wires alone: a busbar of its own starts from its own voltage
-        self.island = {node: number for number, part in enumerate(wired) for node in part}
-        self.no_load = defaultdict(
-            float,
-            {
-                number: max(no_load_voltage(s) for s in self.sources if self.island[buses[s.id][0]] == number)
-                for number in {self.island[positive] for positive, _ in buses.values()}
-            },
-        )
-        negatives = [negative for _, negative in buses.values()]
-        rails = {find(span.conductors[-1].left) for span in topology.spans}
-        grounds = set()
-        for whole in _components(nodes, wires + list(buses.values()) + crossings):
-            candidates = [node for node in negatives if node in whole] or sorted(whole & rails, key=repr)
-            grounds.add(candidates[0] if candidates else min(whole, key=repr))
-        free = [node for node in nodes if node not in grounds]
-        rank = {node: k for k, node in enumerate(free)} | dict.fromkeys(grounds, len(free))
-        cliques = [[rank[find(n)] for c in span.conductors for n in (c.left, c.right)] for span in topology.spans]
-        cliques += [[rank[a], rank[b]] for a, b in wires + others]
-        self.structure: Structure = order_nodes(len(free), cliques)
-        self.number = {free[old]: new for new, old in enumerate(self.structure.order)} | dict.fromkeys(grounds, len(free))
-        self.floating = [min(self.number[node] for node in island) for island in islands if not island & grounds]
+    def _no_load_v(self, node: Node) -> float:
+        return self.nodes.no_load_v.get(self.find(node), 0.0)
 
     def _base(self) -> NDArray[np.float64]:
         n, place = len(self.structure.order), self.structure.place
@@ -166,7 +135,7 @@ class _Compiler:
             base[i] += g
             base[j] += g
             base[place(i, j)] -= g
-        base[self.floating] += BLOCKED_CONDUCTANCE_S
+        base[list(self.nodes.floating)] += BLOCKED_CONDUCTANCE_S
         return base
 
     def _edges(self) -> NDArray[np.void]:
@@ -240,7 +209,7 @@ class _Compiler:
             i, j = self.node(bus.positive), self.node(bus.negative)
             port["span"], port["positive"], port["negative"] = -1, i, j
             port["coupling"] = self.structure.place(i, j)
-            port["start_v"] = self.no_load[self.island[self.find(bus.positive)]]
+            port["start_v"] = self._no_load_v(bus.positive)
         first = len(self.sources)
         for port, load in zip(ports[first:], self.loads, strict=False):
             self._place_load(port, load)
@@ -261,29 +230,8 @@ class _Compiler:
         first, contact = self.first_conductor[number], span.contact(track)
         port["span"], port["x_m"] = number, x
         port["positive"], port["negative"] = first + contact, first + span.returns[track]
-        port["start_v"] = self.no_load[self.island[self.find(span.conductors[contact].left)]]
+        port["start_v"] = self._no_load_v(span.conductors[contact].left)
 
 
 def _pairs(rows: list[tuple[int, int]]) -> NDArray[np.int64]:
     return np.array(rows, np.int64).reshape(-1, 2)
-
-
-def _components(nodes: list[Node], pairs: list[tuple[Node, Node]]) -> list[set[Node]]:
-    """Return the connected components, ordered by their first node."""
-    neighbours: dict[Node, set[Node]] = {node: set() for node in nodes}
-    for a, b in pairs:
-        neighbours[a].add(b)
-        neighbours[b].add(a)
-    seen: set[Node] = set()
-    found = []
-    for start in nodes:
-        if start in seen:
-            continue
-        component, front = {start}, [start]
-        while front:
-            fresh = neighbours[front.pop()] - component
-            component |= fresh
-            front += fresh
-        seen |= component
-        found.append(component)
-    return found
