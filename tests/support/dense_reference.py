@@ -404,12 +404,20 @@ class DenseSolver:
         return t
 
     def solve(self):
-        """Solve from no load at once, and along a rising common load factor; return both port voltage vectors."""
-        direct = self.descend(self.start, 1.0)
-        v = self.start
-        for factor in (0.0, 0.3, 0.6, 0.8, 0.9, 1.0):
-            v = self.descend(v, factor)
-        return self.a @ direct, self.a @ v
+        """Solve from no load at once, and along a rising common load factor; return the port voltages of both.
+
+        Where only one of the two ends anywhere, the other is None.
+        """
+        found = []
+        for factors in ((1.0,), (0.0, 0.3, 0.6, 0.8, 0.9, 1.0)):
+            v = self.start
+            try:
+                for factor in factors:
+                    v = self.descend(v, factor)
+                found.append(self.a @ v)
+            except NoSolutionError:
+                found.append(None)
+        return found
 
     def servable(self, u):
         """Tell whether all loads without limits sit at voltages where they are what they say."""

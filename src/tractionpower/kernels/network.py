@@ -121,13 +121,14 @@ def solve_cold(network, work):
         w.before_v = np.inf  # nothing to draw a line through
         w.u = ports[p].start_v
         w.i = 0.0
-    best, stalled, worst = np.inf, 0, np.inf
+    best, stalled, worst, way = np.inf, 0, np.inf, 1.0
     for iteration in range(COLD_ITERATIONS):
         worst = linearise(network, work, 1.0, ALL)
         stalled = 0 if worst < 0.5 * best else stalled + 1
         best = min(best, worst)
         if iteration > 0 and (worst <= TOLERANCE_A or (worst <= FLAG_A and stalled > 3)):
-            _recover_potentials(network, work)
+            if way < 1.0:
+                _recover_potentials(network, work)
             return iteration, worst
         share = 1.0
         while not solve_linear(network, work):
@@ -135,14 +136,14 @@ def solve_cold(network, work):
                 return COLD_ITERATIONS, np.inf
             share = 0.5 * share if share > 0.01 else 0.0
             linearise(network, work, share, ALL)
-        _descend(segments, ports, work.ports)
+        way = _descend(segments, ports, work.ports)
     _recover_potentials(network, work)
     return COLD_ITERATIONS, worst
 
 
 @njit
 def _recover_potentials(network, work):
-    """Compute the node potentials that belong to the port voltages, after a step that may have been shortened.
+    """Compute the node potentials that belong to the port voltages, after a step that was shortened.
 
     Voltages and currents of the ports are those of the linear network, whatever conductance stands for a port.
     """
@@ -157,7 +158,13 @@ def _recover_potentials(network, work):
 
 @njit
 def _descend(segments, ports, work):
-    """Go along the direction of the last linear solution to where the potential stops falling steeply."""
+    """Go along the direction of the last linear solution to where the potential stops falling steeply.
+
+    Returns
+    -------
+    float
+        How much of the way was gone, 1 for all of it.
+    """
     longest = 0.0
     for p in range(ports.shape[0]):
         w = work[p]
@@ -181,6 +188,7 @@ def _descend(segments, ports, work):
         w = work[p]
         w.u += t * (w.u_next - w.u)
         w.i += t * (w.i_next - w.i)
+    return t
 
 
 @njit
