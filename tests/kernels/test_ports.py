@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from solved import LIMITS, Solved, single_line, tap
 
-from tractionpower.kernels.ports import find_segment, linearise, port_current
+from tractionpower.kernels.ports import find_segment, linearise, port_current, port_integral, steepest
 from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, PORT, SEGMENT
 from tractionpower.model.limits import system_voltages
 from tractionpower.model.supply import Substation
@@ -89,25 +89,29 @@ def test_the_scale_switches_a_port():
     assert current(load(kw=3000.0), 3000.0, scale=0.0) == 0.0
 
 
-def test_at_a_kink_the_larger_slope_counts():
-    segments, record = port(source_segments(station()))
-    assert find_segment(segments, record, 3600.0) == 0  # a diode at its no-load voltage conducts
-    assert find_segment(segments, record, np.nextafter(3600.0, 4000.0)) == 1
-    segments, record = port(load(kw=3000.0))
-    assert find_segment(segments, record, 2000.0) == 1  # resistance below, falling above
-    segments, record = port(load(kw=-3000.0))
-    assert find_segment(segments, record, 2000.0) == 2  # rising current above
-    assert find_segment(segments, record, 3900.0) == 3
+def slope_at(rows, u, near_v):
+    segments, record = port(rows)
+    return steepest(segments, record, find_segment(segments, record, u), u, near_v)
+
+
+def test_near_a_kink_the_larger_slope_counts():
+    conducting = pytest.approx(1.0 / 0.12)
+    assert slope_at(source_segments(station()), 3600.0, 1e-6) == conducting  # a diode at its no-load voltage conducts
+    assert slope_at(source_segments(station()), 3600.0 + 0.9e-6, 1e-6) == conducting
+    assert slope_at(source_segments(station()), 3600.1, 1e-6) == BLOCKED_CONDUCTANCE_S
+    assert slope_at(load(kw=3000.0), 2000.0, 1e-6) == pytest.approx(3e6 / 2000.0**2)  # resistance below, falling above
+    assert slope_at(load(kw=-3000.0), 2000.0, 1e-6) == pytest.approx(3e6 / 2000.0**2)  # rising current above
+    assert slope_at(load(kw=-3000.0), 3900.0 - 0.5e-6, 1e-6) > 2.0
 
 
 def test_the_tangent_touches():
     solved = Solved(*single_line([tap("x", 10.0, kw=4000.0)]))
     work, network = solved.work, solved.network
     work.ports["u"][2] = 3000.0
-    linearise(network, work, 1.0, -1.0)
+    linearise(network, work, 1.0, -1.0, 1e-6)
     assert work.ports["g"][2] == pytest.approx(-4e6 / 3000.0**2)
     assert work.ports["g"][2] * 3000.0 + work.ports["j"][2] == pytest.approx(4e6 / 3000.0)
-    linearise(network, work, 0.0, -1.0)
+    linearise(network, work, 0.0, -1.0, 1e-6)
     assert work.ports["g"][2] == 0.0
     assert work.ports["j"][2] == pytest.approx(4e6 / 3000.0)
 
@@ -115,4 +119,13 @@ def test_the_tangent_touches():
 def test_what_is_not_a_number_is_an_infinite_gap():
     solved = Solved(*single_line([tap("x", 10.0, kw=4000.0)]))
     solved.work.ports["u"][0] = np.nan
-    assert linearise(solved.network, solved.work, 1.0, -1.0) == np.inf
+    assert linearise(solved.network, solved.work, 1.0, -1.0, 1e-6) == np.inf
+
+
+@pytest.mark.parametrize("rows", [load(kw=3000.0), load(kw=-3000.0), source_segments(station())])
+def test_the_integral_is_that_of_the_current(rows):
+    segments, record = port(rows)
+    grid = np.linspace(-50.0, 4200.0, 400_001)
+    currents = [port_current(segments, record, u) for u in grid]
+    assert port_integral(segments, record, -50.0, 4200.0) == pytest.approx(np.trapezoid(currents, grid), rel=1e-6)
+    assert port_integral(segments, record, 4200.0, -50.0) == -port_integral(segments, record, -50.0, 4200.0)

@@ -9,8 +9,7 @@ Left out of the comparison of voltages, for a reason each:
   holds their voltage, and 1e-9 S beside 1e5 S is lost in rounding (volts); their currents are checked.
 
 Draws where the reference finds two solutions from its two starts are counted as ambiguous and must stay rare. Draws
-that cannot be served (a share of those with ``limits: none``) must be so for both. A solver that says that it has not
-converged is counted too: none in 1000, one in some thousands.
+that cannot be served (a share of those with ``limits: none``) must be so for both.
 """
 
 import os
@@ -24,7 +23,7 @@ from hypothesis import strategies as st
 from random_networks import Draw, tame_dead_loads
 from solved import LIMITS, Solved, seed_network, tap
 
-from tractionpower.kernels.network import CONVERGED, FLAG_A, NOT_CONVERGED, NOT_SERVABLE, TOLERANCE_A
+from tractionpower.kernels.network import CONVERGED, FLAG_A, NOT_SERVABLE, TOLERANCE_A
 from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S
 from tractionpower.supply.checks import check_supply
 
@@ -74,9 +73,6 @@ def compare(seed, tally):
     held = busy(network, dense, direct)
     if not np.allclose(direct[held], continued[held], rtol=0.0, atol=VOLTAGE_V):
         tally["ambiguous"] += 1
-        return
-    if ours.status == NOT_CONVERGED:
-        tally["not converged"] += 1
         return
     assert ours.status == CONVERGED
     assert ours.worst <= (FLAG_A if has_hard_ceiling(network) else TOLERANCE_A)
@@ -155,7 +151,6 @@ def test_random_networks_agree_with_the_reference(chunk):
     assert tally["ambiguous"] < 0.02 * tally["all"], tally
     assert tally["one start"] <= 0.01 * tally["all"], tally
     assert tally["no reference"] <= 0.002 * tally["all"], tally
-    assert tally["not converged"] <= 0.001 * tally["all"], tally  # many that feed back into hard ceilings: none in 1000
     assert tally["not servable"] < 0.1 * tally["all"], tally
     assert tally["compared"] > 4 * tally["all"], tally
 
@@ -202,3 +197,11 @@ def test_the_reference_solves_the_published_network():
     np.testing.assert_allclose(direct[2:], expected, rtol=1e-9)
     np.testing.assert_allclose(continued, direct, rtol=0.0, atol=1e-6)
     assert Ports(network).sources(direct[:2])[0] == pytest.approx([-1991.744] * 2, abs=1e-3)
+
+
+@pytest.mark.parametrize("seed", [(1, 97341), (7, 1215), (7, 2789), (7, 10151), (7, 10906), (7, 21920)])
+def test_draws_that_once_did_not_converge(seed):
+    """A hump on the way, idle busbars a rounding above their kink, many hard ceilings at once."""
+    supply, line, network = draw_network(*seed)
+    ours = Solved(supply, line, expect=CONVERGED)
+    check_kirchhoff(network, ours)

@@ -9,7 +9,6 @@ to the first of a group of loads on the same conductor.
 """
 
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
@@ -25,14 +24,6 @@ ROUNDING = 64.0 * np.finfo(float).eps
 
 class NoSolutionError(Exception):
     """The reference found no solution."""
-
-
-class Mark(NamedTuple):
-    """A place with a node but without a device."""
-
-    id: tuple
-    track: str
-    km: float
 
 
 class Groups:
@@ -171,29 +162,10 @@ class DenseNetwork:
         cuts = [cut for cut in self.cuts[track] if self._exists(track, cut)]
         return [piece for piece in pairwise(cuts) if self._contact_ohm(track, 0.5 * sum(piece)) is not None]
 
-    def _piece_at(self, track, km):
-        return next((low, high) for low, high in self._pieces(track) if low <= km <= high)
-
-    def _marks(self):
-        """Return places without current beside each load, on the tracks that share its rails.
-
-        The solver records voltages there; a load less than a metre behind such a place shares its node.
-        """
-        taken = {(load.track, load.km) for load in self.supply.loads}
-        marks = {}
-        for load in self.supply.loads:
-            piece = self._piece_at(load.track, load.km)
-            for members, low, high, _ in self.rail_rows:
-                if load.track in members and low <= piece[0] and piece[1] <= high:
-                    others = [t for t in members if piece in self._pieces(t) and (t, load.km) not in taken]
-                    marks |= {(t, load.km): Mark(("mark", t, load.km), t, load.km) for t in others}
-        return list(marks.values())
-
     def _string_contact_lines(self):
         self.contact_at, self.piece = {}, {}
-        places = [*self.supply.loads, *self._marks()]
         for track in self.ends:
-            loads = [place for place in places if place.track == track]
+            loads = [load for load in self.supply.loads if load.track == track]
             for cut in self.cuts[track]:
                 if self._exists(track, cut):
                     sides = self._sides(track, cut)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from tractionpower.kernels.jit import njit
-from tractionpower.kernels.ports import find_segment, linearise, port_current
+from tractionpower.kernels.ports import find_segment, linearise, port_current, port_integral
 from tractionpower.kernels.skeleton import factor_and_solve
 from tractionpower.kernels.spans import condense, expand
 
@@ -21,13 +21,20 @@ TOLERANCE_A = 1e-6
 FLAG_A = 1e-3
 """A step with a larger imbalance is flagged [A]."""
 
-KEEP_A = 0.5 * TOLERANCE_A
-ALL = -1.0
-STEP_V = 300.0
-SMOOTH_V = 20.0
-ABSURD_V = 1e5
+KEEP_A = 0.5 * TOLERANCE_A  # a tangent that meets its characteristic so closely is kept within a step
+ALL = -1.0  # no tangent is kept
+
 WARM_ITERATIONS = 12
+SMOOTH_V = 20.0  # a voltage that changes less from one step to the next is drawn on by a straight line
+ABSURD_V = 1e5  # Newton's method has lost its way
+
 COLD_ITERATIONS = 300
+STEP_V = 300.0  # longest step of a descent
+SHORTEST = 1e-9  # shortest part of a step
+HUMP_W = 1e-3  # a direction that falls less is too short to lead over a hump
+KINK_V = 1e-6  # so near to a kink, rounding decides the side: the larger slope counts
+WIDE_KINK_V = 0.1  # many hard ceilings make a descent zigzag; so near to a kink the larger slope counts in every other
+PATIENCE = 100  # iteration after these
 
 CONVERGED, NOT_CONVERGED, NOT_SERVABLE = 0, 1, 2
 
@@ -88,7 +95,7 @@ def solve_warm(network, work):
             w.u += change
     before = np.inf
     for iteration in range(WARM_ITERATIONS + 1):
-        worst = linearise(network, work, 1.0, KEEP_A if iteration > 0 else ALL)
+        worst = linearise(network, work, 1.0, KEEP_A if iteration > 0 else ALL, KINK_V)
         if iteration > 0:
             if worst <= TOLERANCE_A or (worst <= FLAG_A and worst >= 0.5 * before):
                 return iteration, worst
@@ -123,7 +130,8 @@ def solve_cold(network, work):
         w.i = 0.0
     best, stalled, worst, way = np.inf, 0, np.inf, 1.0
     for iteration in range(COLD_ITERATIONS):
-        worst = linearise(network, work, 1.0, ALL)
+        near = WIDE_KINK_V if iteration > PATIENCE and iteration % 2 else KINK_V
+        worst = linearise(network, work, 1.0, ALL, near)
         stalled = 0 if worst < 0.5 * best else stalled + 1
         best = min(best, worst)
         if iteration > 0 and (worst <= TOLERANCE_A or (worst <= FLAG_A and stalled > 3)):
@@ -135,7 +143,7 @@ def solve_cold(network, work):
             if share == 0.0:  # not even without falling characteristics: not a number, or lost in rounding
                 return COLD_ITERATIONS, np.inf
             share = 0.5 * share if share > 0.01 else 0.0
-            linearise(network, work, share, ALL)
+            linearise(network, work, share, ALL, near)
         way = _descend(segments, ports, work.ports)
     _recover_potentials(network, work)
     return COLD_ITERATIONS, worst
@@ -184,11 +192,25 @@ def _descend(segments, ports, work):
                 high, high_fall, low_fall = t, fall, 0.5 * low_fall
             else:
                 low, low_fall, high_fall = t, fall, 0.5 * high_fall
+    if start < -HUMP_W:
+        while t > SHORTEST and _rise(segments, ports, work, t) > 0.0:  # the root lies beyond a hump
+            t *= 0.5
     for p in range(ports.shape[0]):
         w = work[p]
         w.u += t * (w.u_next - w.u)
         w.i += t * (w.i_next - w.i)
     return t
+
+
+@njit
+def _rise(segments, ports, work, t):
+    """Return by how much the potential is higher `t` of the way along the direction [W]."""
+    rise = 0.0
+    for p in range(ports.shape[0]):
+        w = work[p]
+        du = t * (w.u_next - w.u)
+        rise += port_integral(segments, ports[p], w.u, w.u + du) - du * (w.i + 0.5 * t * (w.i_next - w.i))
+    return rise
 
 
 @njit

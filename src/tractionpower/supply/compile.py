@@ -7,7 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, CONDUCTOR, EDGE, NO_SLOT, PORT, SECTION, SEGMENT, SPAN, Network
+from tractionpower.kernels.tables import (
+    BLOCKED_CONDUCTANCE_S,
+    CONDUCTOR,
+    EDGE,
+    NO_SLOT,
+    PORT,
+    SECTION,
+    SEGMENT,
+    SHARED_NODE_M,
+    SPAN,
+    Network,
+)
 from tractionpower.model.limits import Limit, SystemVoltages, system_voltages
 from tractionpower.model.line import Line
 from tractionpower.model.supply import Load, Substation, Supply
@@ -110,13 +121,18 @@ class _Compiler:
         )
 
     def _probes(self) -> list[tuple[str, float]]:
-        """Return the places beside each load on the tracks that share its return conductor: the voltage bends there too."""
-        places = {
-            (track, load.km)
-            for load in self.loads
-            for track in self.topology.spans[self.topology.locate(load.track, load.km)[0]].returns
+        """Return the places beside each load on the tracks that share its return conductor: the voltage bends there too.
+
+        Where a load stands on that track as close as to share a node, its own voltage is recorded anyway.
+        """
+        topology = self.topology
+        beside = {
+            (track, load.km) for load in self.loads for track in topology.spans[topology.locate(load.track, load.km)[0]].returns
         }
-        return sorted(places - {(load.track, load.km) for load in self.loads})
+        kms = {track: [load.km for load in self.loads if load.track == track] for track, _ in beside}
+        return sorted(
+            (track, place) for track, place in beside if all(abs(km - place) >= SHARED_NODE_M / 1000.0 for km in kms[track])
+        )
 
     # -- nodes ---------------------------------------------------------------------------------------------------
 
