@@ -19,7 +19,7 @@ from tractionpower.model.line import (
 )
 
 
-def only(line, code, path, *words, severity="error"):
+def assert_only(line, code, path, *words, severity="error"):
     """Assert that the line has one problem and that this is it."""
     problems = check_line(line)
     assert len(problems) == 1, [str(problem) for problem in problems]
@@ -43,12 +43,12 @@ def test_a_level_line_without_limits_has_no_problem(line):
 
 def test_two_tracks_of_one_id(line, parts):
     extra = Track(id="1", from_km=0.0, to_km=5.0)
-    only(line(tracks=(*parts["tracks"], extra)), "duplicate_id", "line.tracks[2]", "'1'", "2 times", "its own id")
+    assert_only(line(tracks=(*parts["tracks"], extra)), "duplicate_id", "line.tracks[2]", "'1'", "2 times", "its own id")
 
 
 def test_two_stations_of_one_id(line):
     stations = (Station(id="A", km=0.0), Station(id="A", km=3.0))
-    only(line(stations=stations), "duplicate_id", "line.stations[A]", "'A'", "its own id")
+    assert_only(line(stations=stations), "duplicate_id", "line.stations[A]", "'A'", "its own id")
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def test_two_stations_of_one_id(line):
     ],
 )
 def test_stations_off_their_tracks(line, station, code, path, words):
-    only(line(stations=(station,)), code, f"line.stations[X].{path}", *words)
+    assert_only(line(stations=(station,)), code, f"line.stations[X].{path}", *words)
 
 
 ROWS = {
@@ -90,7 +90,7 @@ ROWS = {
 )
 def test_rows_name_tracks_that_exist_and_stay_on_them(line, parts, name, row, code, path, words):
     rows = parts.get(name, ())
-    only(line(**{name: (*rows, ROWS[name](**row))}), code, f"line.{name}[{len(rows)}]{path}", *words)
+    assert_only(line(**{name: (*rows, ROWS[name](**row))}), code, f"line.{name}[{len(rows)}]{path}", *words)
 
 
 @pytest.mark.parametrize("name", ["gradients", "curves", "tunnels"])
@@ -107,7 +107,7 @@ def test_overlaps(line, parts, name):
 def test_an_overlap_on_two_tracks_is_one_problem(line):
     curves = (Curve(from_km=1.0, to_km=3.0, radius_m=500), Curve(from_km=2.5, to_km=4.0, radius_m=700))
     words = ("rows 0 and 1 both hold on tracks 1, 2 from km 2.5 to km 3",)
-    only(line(curves=curves), "overlap", "line.curves[1]", *words)
+    assert_only(line(curves=curves), "overlap", "line.curves[1]", *words)
 
 
 def test_rows_on_different_tracks_and_limits_may_overlap(line, parts):
@@ -118,24 +118,28 @@ def test_rows_on_different_tracks_and_limits_may_overlap(line, parts):
 
 def test_a_gap_of_gradients(line, parts):
     gap = line(gradients=parts["gradients"][:2])
-    only(gap, "gap", "line.gradients", "no gradient on track 2 from km 12.5 to km 20", "level is assumed", severity="warning")
+    assert_only(
+        gap, "gap", "line.gradients", "no gradient on track 2 from km 12.5 to km 20", "level is assumed", severity="warning"
+    )
 
 
 def test_a_gap_of_speed_limits(line):
     limits = (SpeedLimit(from_km=0.0, to_km=8.0, kmh=160), SpeedLimit(from_km=9.0, to_km=20.0, kmh=160))
     words = ("no speed limit on tracks 1, 2 from km 8 to km 9;", "a train that runs there is refused")
-    only(line(speed_limits=limits), "gap", "line.speed_limits", *words, severity="warning")
+    assert_only(line(speed_limits=limits), "gap", "line.speed_limits", *words, severity="warning")
 
 
 def test_a_gap_of_speed_limits_in_one_direction(line, parts):
     up = SpeedLimit(from_km=0.0, to_km=20.0, kmh=160, direction="increasing")
     words = ("tracks 1, 2 from km 0 to km 20 for trains that run with decreasing km",)
-    only(line(speed_limits=(up,)), "gap", "line.speed_limits", *words, severity="warning")
+    assert_only(line(speed_limits=(up,)), "gap", "line.speed_limits", *words, severity="warning")
 
 
 def test_rows_of_a_category_serve_only_its_trains(line):
     limits = (SpeedLimit(from_km=0.0, to_km=20.0, kmh=80, category="freight"),)
-    only(line(speed_limits=limits), "gap", "line.speed_limits", "category freight serve only its trains", severity="warning")
+    assert_only(
+        line(speed_limits=limits), "gap", "line.speed_limits", "category freight serve only its trains", severity="warning"
+    )
 
 
 @pytest.mark.parametrize(
@@ -151,19 +155,21 @@ def test_rows_of_a_category_serve_only_its_trains(line):
     ],
 )  # fmt: skip
 def test_chainage_breaks_off_the_track(line, item, code, path, words):
-    only(line(chainage_breaks=(item,)), code, f"line.chainage_breaks[0].{path}", *words)
+    assert_only(line(chainage_breaks=(item,)), code, f"line.chainage_breaks[0].{path}", *words)
 
 
 def test_a_break_in_kilometres_that_another_leaves_out(line):
     breaks = (ChainageBreak(at_km=15.0, continues_as_km=17.0), ChainageBreak(at_km=16.0, continues_as_km=18.0))
-    only(line(chainage_breaks=breaks), "chainage_break", "line.chainage_breaks[1].at_km", "above km 17", "the break before")
+    assert_only(
+        line(chainage_breaks=breaks), "chainage_break", "line.chainage_breaks[1].at_km", "above km 17", "the break before"
+    )
 
 
 def test_rows_through_a_break_are_in_order_and_left_out_kilometres_are_not(line):
     breaks = (ChainageBreak(at_km=15.0, continues_as_km=17.0),)
     assert check_line(line(chainage_breaks=breaks)) == []
     words = ("no track exists at km 16", "from km 0 to km 15; tracks 1, 2 from km 17 to km 20")
-    only(line(chainage_breaks=breaks, stations=(Station(id="X", km=16.0),)), "off_track", "line.stations[X].km", *words)
+    assert_only(line(chainage_breaks=breaks, stations=(Station(id="X", km=16.0),)), "off_track", "line.stations[X].km", *words)
 
 
 @pytest.mark.parametrize(
@@ -176,10 +182,10 @@ def test_rows_through_a_break_are_in_order_and_left_out_kilometres_are_not(line)
 )
 def test_connections_lie_on_tracks(line, ends, code, path, words):
     connection = Connection(from_=ends[0], to=ends[1])
-    only(line(connections=(connection,)), code, f"line.connections[0].{path}", *words)
+    assert_only(line(connections=(connection,)), code, f"line.connections[0].{path}", *words)
 
 
 def test_long_lists_of_tracks_are_shortened(line):
     tracks = tuple(Track(id=str(number), from_km=float(number), to_km=50.0) for number in range(30))
     long = line(tracks=tracks, gradients=(), speed_limits=(), tunnels=(), stations=(Station(id="X", km=60.0),))
-    only(long, "off_track", "line.stations[X].km", "... (30 in all)")
+    assert_only(long, "off_track", "line.stations[X].km", "... (30 in all)")

@@ -65,7 +65,7 @@ def check(line):
     return run
 
 
-def only(problems, code, path, *words, severity="error"):
+def assert_only(problems, code, path, *words, severity="error"):
     """Assert that there is one problem and that this is it."""
     assert len(problems) == 1, [str(problem) for problem in problems]
     assert (problems[0].code, problems[0].path, problems[0].severity) == (code, path, severity)
@@ -95,11 +95,13 @@ def test_the_good_study_has_no_problem(check, line):
     ],
 )
 def test_two_devices_of_one_id(check, name, devices):
-    only(check(**{name: devices}), "duplicate_id", f"supply.{name}[{devices[0].id}]", "stands 2 times", "its own id")
+    assert_only(check(**{name: devices}), "duplicate_id", f"supply.{name}[{devices[0].id}]", "stands 2 times", "its own id")
 
 
 def test_a_substation_and_a_cabin_of_one_id(check):
-    only(check(section_cabins=(cabin("A"),)), "duplicate_id", "supply.section_cabins[A]", "'A'", "substation and a section cabin")
+    assert_only(
+        check(section_cabins=(cabin("A"),)), "duplicate_id", "supply.section_cabins[A]", "'A'", "substation and a section cabin"
+    )
 
 
 @pytest.mark.parametrize(
@@ -117,7 +119,7 @@ def test_a_substation_and_a_cabin_of_one_id(check):
 )
 def test_devices_stand_on_tracks_that_exist(check, name, device, code, path, words):
     devices = (A, B, device) if name == "substations" else (device,)
-    only(check(**{name: devices}), code, f"supply.{name}[X].{path}", *words)
+    assert_only(check(**{name: devices}), code, f"supply.{name}[X].{path}", *words)
 
 
 def test_a_device_without_tracks_belongs_to_those_at_its_place(check, line):
@@ -139,16 +141,18 @@ def test_conductors_do_not_overlap(check, name, row):
 
 @pytest.mark.parametrize(("name", "row"), [("contact_lines", wire), ("return_circuit", rails)])
 def test_conductors_lie_on_tracks_that_exist(check, name, row):
-    only(check(**{name: (row(tracks=("1", "2", "9")),)}), "unknown_track", f"supply.{name}[0].tracks", "no track 9")
+    assert_only(check(**{name: (row(tracks=("1", "2", "9")),)}), "unknown_track", f"supply.{name}[0].tracks", "no track 9")
 
 
 def test_a_return_circuit_beyond_the_end_of_a_track(check):
-    only(check(return_circuit=(rails(high=25.0),)), "off_track", "supply.return_circuit[0].to_km", "km 25 is not on tracks 1, 2")
+    assert_only(
+        check(return_circuit=(rails(high=25.0),)), "off_track", "supply.return_circuit[0].to_km", "km 25 is not on tracks 1, 2"
+    )
 
 
 def test_a_gap_of_the_contact_line(check):
     gap = check(contact_lines=(wire(0.0, 10.0), wire(10.0, 12.0, ("2",)), wire(12.0, 20.0)))
-    only(gap, "gap", "supply.contact_lines", "track 1 from km 10 to km 12", "has no supply", severity="warning")
+    assert_only(gap, "gap", "supply.contact_lines", "track 1 from km 10 to km 12", "has no supply", severity="warning")
 
 
 def test_a_track_without_any_contact_line_is_no_gap(check):
@@ -157,7 +161,9 @@ def test_a_track_without_any_contact_line_is_no_gap(check):
 
 def test_a_load_without_contact_line(check):
     words = ("load x reaches no contact line on track 2 at km 4", "contact_lines")
-    only(check(contact_lines=(wire(tracks=("1",)),), loads=(load(track="2"),)), "no_contact_line", "supply.loads[x].km", *words)
+    assert_only(
+        check(contact_lines=(wire(tracks=("1",)),), loads=(load(track="2"),)), "no_contact_line", "supply.loads[x].km", *words
+    )
 
 
 def test_a_load_in_a_gap_is_an_error_beside_the_warning(check):
@@ -177,17 +183,17 @@ def test_a_device_that_reaches_no_contact_line(check, name, device, kind):
     devices = (A, B, device) if name == "substations" else (device,)
     problems = check(contact_lines=(wire(tracks=("1",)),), loads=(), **{name: devices})
     words = (f"{kind} reaches no contact line on track 2 at km 5",)
-    only(problems, "no_contact_line", f"supply.{name}[X].km", *words, severity="warning")
+    assert_only(problems, "no_contact_line", f"supply.{name}[X].km", *words, severity="warning")
 
 
 def test_a_contact_line_without_return_circuit(check):
     words = ("no return circuit on tracks 1, 2 from km 8 to km 20", "zero resistance is allowed")
-    only(check(return_circuit=(rails(high=8.0),)), "no_return_circuit", "supply.contact_lines[0]", *words)
+    assert_only(check(return_circuit=(rails(high=8.0),)), "no_return_circuit", "supply.contact_lines[0]", *words)
 
 
 def test_the_return_circuit_of_another_track_does_not_count(check):
     problems = check(contact_lines=(wire(tracks=("1",)), wire(tracks=("2",))), return_circuit=(rails(tracks=("1",)),))
-    only(problems, "no_return_circuit", "supply.contact_lines[1]", "on track 2 from km 0 to km 20")
+    assert_only(problems, "no_return_circuit", "supply.contact_lines[1]", "on track 2 from km 0 to km 20")
 
 
 def test_conductors_through_chainage_breaks(check, line):
@@ -201,7 +207,7 @@ def test_conductors_through_chainage_breaks(check, line):
 def test_an_open_point_leaves_a_dead_stretch(check):
     problems = check(substations=(A,), section_cabins=(), section_points=(insulator(km=15.0),))
     words = ("no substation in service reaches track 1 from km 15 to km 20", "close a section cabin or section point")
-    only(problems, "dead_stretch", "supply.contact_lines[0]", *words, severity="warning")
+    assert_only(problems, "dead_stretch", "supply.contact_lines[0]", *words, severity="warning")
 
 
 def test_a_dead_stretch_between_two_open_cabins_and_its_load(check):
@@ -221,7 +227,7 @@ def test_a_busbar_ties_tracks(check, state):
     middle = station("M", 13.0, state=state)
     assert check(substations=(A, middle, B), section_cabins=(), section_points=points) == []
     tied = check(substations=(A, middle), section_cabins=(), section_points=points, loads=())
-    only(tied, "dead_stretch", "supply.contact_lines[0]", "track 2 from km 18 to km 20", severity="warning")
+    assert_only(tied, "dead_stretch", "supply.contact_lines[0]", "track 2 from km 18 to km 20", severity="warning")
 
 
 @pytest.mark.parametrize("state", ["bypassed", "open"])
@@ -235,7 +241,7 @@ def test_a_substation_that_is_bypassed_or_open_ties_nothing(check, state):
 def test_a_bypassed_cabin_neither_ties_nor_cuts(check):
     point = (insulator(km=12.0),)
     assert check(section_cabins=(cabin(km=15.0),), section_points=point, substations=(A,)) == []
-    only(
+    assert_only(
         check(section_cabins=(cabin(km=15.0, state="bypassed"),), section_points=point, substations=(A,)),
         "dead_stretch", "supply.contact_lines[0]", "track 1 from km 12 to km 20", severity="warning",
     )  # fmt: skip
@@ -255,13 +261,13 @@ def test_a_chain_of_ties_is_followed(check):
 
 def test_a_track_tied_to_nothing_is_dead(check):
     problems = check(substations=(station("A", 0.0, tracks=("1",)),), section_cabins=(), loads=())
-    only(problems, "dead_stretch", "supply.contact_lines[0]", "track 2 from km 0 to km 20", severity="warning")
+    assert_only(problems, "dead_stretch", "supply.contact_lines[0]", "track 2 from km 0 to km 20", severity="warning")
 
 
 @pytest.mark.parametrize("stations", [(), (station("A", 0.0, state="rectifiers_out"),)])
 def test_no_substation_in_service(check, stations):
     words = ("no substation is in service", "put a substation into service")
-    only(check(substations=stations), "no_source", "supply.substations", *words, severity="warning")
+    assert_only(check(substations=stations), "no_source", "supply.substations", *words, severity="warning")
 
 
 def test_a_supply_of_nothing_but_wires_is_in_order(check):
@@ -278,7 +284,7 @@ def test_a_supply_of_nothing_but_wires_is_in_order(check):
 )
 def test_devices_that_share_a_node(check, name, devices, where):
     words = ("less than 1 m apart on " + where, "they share a node")
-    only(check(**{name: devices}), "shared_node", f"supply.{name}[X].km", *words, severity="warning")
+    assert_only(check(**{name: devices}), "shared_node", f"supply.{name}[X].km", *words, severity="warning")
 
 
 def test_devices_of_different_kinds_tracks_or_places_share_none(check):
@@ -293,24 +299,26 @@ def test_more_heat_than_resistance(check):
     hot = station("A", 0.0, dissipative_resistance_ohm=0.2)
     words = ("0.2 ohm of heat", "0.12 ohm internal")
     path = "supply.substations[A].dissipative_resistance_ohm"
-    only(check(substations=(hot, B)), "dissipative_above_internal", path, *words)
+    assert_only(check(substations=(hot, B)), "dissipative_above_internal", path, *words)
     assert check(substations=(station("A", 0.0, dissipative_resistance_ohm=0.12), B)) == []
 
 
 def test_an_unknown_system(check):
-    only(check(system="dc3k"), "unknown_system", "supply.system", "'dc3k'", "allowed: dc3000")
-    only(check(limits=()), "unknown_system", "supply.system", "the limits table is empty")
+    assert_only(check(system="dc3k"), "unknown_system", "supply.system", "'dc3k'", "allowed: dc3000")
+    assert_only(check(limits=()), "unknown_system", "supply.system", "the limits table is empty")
 
 
 def test_limits_that_lack_a_voltage(check):
-    only(check(limits=LIMITS[1:-1]), "missing_limit", "limits", "dc3000 lack u_min2, u_max2", "add the rows")
+    assert_only(check(limits=LIMITS[1:-1]), "missing_limit", "limits", "dc3000 lack u_min2, u_max2", "add the rows")
 
 
 @pytest.mark.parametrize(("volts", "grid", "words"), [(4000, 1.0, ["4000 V without load;"]), (3800, 1.1, ["4180 V", "1.1 p.u."])])
 def test_no_load_voltage_above_the_highest(check, volts, grid, words):
     high = station("A", 0.0, no_load_voltage_v=volts, grid_voltage_pu=grid)
     path = "supply.substations[A].no_load_voltage_v"
-    only(check(substations=(high, B)), "no_load_above_u_max2", path, "U_max2 = 3900 V of dc3000", *words, severity="warning")
+    assert_only(
+        check(substations=(high, B)), "no_load_above_u_max2", path, "U_max2 = 3900 V of dc3000", *words, severity="warning"
+    )
 
 
 def test_no_load_voltage_between_the_two_highest_is_in_order(check):
@@ -319,7 +327,7 @@ def test_no_load_voltage_between_the_two_highest_is_in_order(check):
 
 def test_fold_back_above_the_highest(check):
     problems = check(loads=(load(power_kw=-500.0, fold_back_from_v=3950),))
-    only(problems, "fold_back_above_u_max2", "supply.loads[x].fold_back_from_v", "3950 V", "3900 V", "hard ceiling")
+    assert_only(problems, "fold_back_above_u_max2", "supply.loads[x].fold_back_from_v", "3950 V", "3900 V", "hard ceiling")
     assert check(loads=(load(power_kw=-500.0, fold_back_from_v=3900, from_="00:01:00", to="00:02:00"),)) == []
 
 

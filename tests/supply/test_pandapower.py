@@ -52,7 +52,7 @@ class Peer:
         return self.net.res_bus_dc.vm_pu.to_numpy() * E_V
 
 
-def compare(solved, peer, buses):
+def assert_agreement(solved, peer, buses):
     volts = peer.solve()
     assert [solved.u[name] for name in buses] == pytest.approx([volts[bus] for bus in buses.values()], rel=1e-6)
 
@@ -84,7 +84,7 @@ def test_single_line(loads):
         peer.source(buses[name], 0.12)
     for name, (_, kw) in loads.items():
         peer.load(buses[name], kw)
-    compare(solved, peer, buses)
+    assert_agreement(solved, peer, buses)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -132,4 +132,4 @@ def test_two_tracks_with_cabins_and_a_ring_of_feeders(seed):
                     peer.resistance(last, buses[name], 0.055 * (km - last_km))
                     last, last_km = buses[name], km
             peer.resistance(last, ends[1], 0.055 * (high - last_km))
-    compare(solved, peer, {name: bus for name, bus in buses.items() if name not in cabins})
+    assert_agreement(solved, peer, {name: bus for name, bus in buses.items() if name not in cabins})
