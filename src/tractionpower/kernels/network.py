@@ -24,6 +24,8 @@ FLAG_A = 1e-3
 KEEP_A = 0.5 * TOLERANCE_A  # a tangent that meets its characteristic so closely is kept within a step
 ALL = -1.0  # no tangent is kept
 
+STALL = 3  # iterations without halving the imbalance, after which it is taken for rounding
+
 WARM_ITERATIONS = 12
 SMOOTH_V = 20.0  # a voltage that changes less from one step to the next is drawn on by a straight line
 ABSURD_V = 1e5  # Newton's method has lost its way
@@ -97,7 +99,7 @@ def solve_warm(network, work):
     for iteration in range(WARM_ITERATIONS + 1):
         worst = linearise(network, work, 1.0, KEEP_A if iteration > 0 else ALL, KINK_V)
         if iteration > 0:
-            if worst <= TOLERANCE_A or (worst <= FLAG_A and worst >= 0.5 * before):
+            if worst <= TOLERANCE_A or (iteration > STALL and 0.5 * before <= worst <= FLAG_A):
                 return iteration, worst
             before = worst
         if not solve_linear(network, work):
@@ -134,7 +136,7 @@ def solve_cold(network, work):
         worst = linearise(network, work, 1.0, ALL, near)
         stalled = 0 if worst < 0.5 * best else stalled + 1
         best = min(best, worst)
-        if iteration > 0 and (worst <= TOLERANCE_A or (worst <= FLAG_A and stalled > 3)):
+        if iteration > 0 and (worst <= TOLERANCE_A or (worst <= FLAG_A and stalled > STALL)):
             if way < 1.0:
                 _recover_potentials(network, work)
             return iteration, worst
@@ -243,7 +245,7 @@ def _cut_demand(ports, work, factor):
 
 @njit
 def solve(network, work, warm):
-    """Solve the network for its stable solution with the highest voltages.
+    """Solve the network for the stable solution that descent from no load finds.
 
     When the demand cannot be served, all demand is cut by the largest common factor that can, and `scale` of the
     ports stays cut: devices write it anew before the next solution.
