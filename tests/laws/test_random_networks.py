@@ -103,7 +103,7 @@ def check_kirchhoff(network, ours):
     _, inside, worst, _ = ours.flows()
     assert max(inside, worst) <= accepted * shared.max(initial=1) + noise.max(initial=0.0) + floating
     u = ours.work.ports["u"][: len(ours.names)]
-    np.testing.assert_allclose(u, v[ends[:, 0]] - v[ends[:, 1]], rtol=0.0, atol=1e-5)
+    np.testing.assert_allclose(u, v[ends[:, 0]] - v[ends[:, 1]], rtol=0.0, atol=1e-6)
     assert np.all(np.abs(balance(network, v, u)) <= accepted * np.maximum(shared, 1) + noise + floating)
 
 

@@ -1,92 +1,27 @@
-"""Extremes and ledgers against what a few lines of numpy say of all rows at once."""
-
-import itertools
+"""Key figures: names, units, and sums in kilowatt hours."""
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from tractionpower.kernels.tables import STEP_RESULT
-from tractionpower.results.key_figures import ElectricLedger, Extremes, KeyFigure
-
-SEEDS = st.integers(0, 2**32)
-CUTS = st.lists(st.integers(0, 40), max_size=6)
-
-
-def pieces(rows, cuts):
-    bounds = [0, *sorted(min(cut, rows) for cut in cuts), rows]
-    return list(itertools.pairwise(bounds))
-
-
-@settings(deadline=None, derandomize=True)
-@given(seed=SEEDS, rows=st.integers(1, 40), width=st.integers(0, 4), cuts=CUTS)
-def test_extremes(seed, rows, width, cuts):
-    rng = np.random.default_rng(seed)
-    values = rng.integers(-5, 6, (rows, width)) * rng.choice([1.0, 0.1, 1e6])  # ties are likely
-    time_s = np.cumsum(rng.uniform(0.1, 2.0, rows))
-    found, whole = Extremes(width), Extremes(width)
-    for first, end in pieces(rows, cuts):
-        found.add(time_s[first:end], values[first:end])
-    whole.add(time_s, values)
-    np.testing.assert_array_equal(found.lowest, values.min(axis=0))
-    np.testing.assert_array_equal(found.highest, values.max(axis=0))
-    np.testing.assert_array_equal(found.lowest_s, time_s[values.argmin(axis=0)])  # the first time
-    np.testing.assert_array_equal(found.highest_s, time_s[values.argmax(axis=0)])
-    if width:
-        assert found.count == rows
-    np.testing.assert_allclose(found.mean, values.mean(axis=0), atol=1e-9)
-    np.testing.assert_allclose(found.rms, np.sqrt((values**2).mean(axis=0)), atol=1e-9)
-    np.testing.assert_array_equal(found.total, whole.total)  # to the last bit, wherever the pieces end
-    np.testing.assert_array_equal(found.squares, whole.squares)
-
-
-def test_extremes_of_nothing():
-    found = Extremes(2)
-    found.add(np.zeros(0), np.zeros((0, 2)))
-    assert found.count == 0
-    np.testing.assert_array_equal(found.mean, 0.0)
-    np.testing.assert_array_equal(found.rms, 0.0)
-
-
-def random_steps(rng, rows):
-    steps = np.zeros(rows, STEP_RESULT)
-    for name in ("regulation_w", "load_w", "conductor_w"):
-        steps[name] = rng.normal(0.0, 1e6, rows)
-    steps["source_w"] = steps["regulation_w"] + steps["load_w"] + steps["conductor_w"]
-    steps["gross_w"] = abs(steps["source_w"]) + abs(steps["load_w"])
-    return steps
-
-
-@settings(deadline=None, derandomize=True)
-@given(seed=SEEDS, rows=st.integers(1, 40), cuts=CUTS, step_s=st.sampled_from([0.02, 0.5, 1.0]))
-def test_the_ledger(seed, rows, cuts, step_s):
-    steps = random_steps(np.random.default_rng(seed), rows)
-    ledger, whole = ElectricLedger(), ElectricLedger()
-    for first, end in pieces(rows, cuts):
-        ledger.add(steps[first:end], step_s)
-    whole.add(steps, step_s)
-    assert ledger.closes
-    assert ledger.as_dict() == whole.as_dict()
-    for name in ElectricLedger.NAMES:
-        expected = steps[f"{name}_w"].sum() * step_s
-        assert ledger.energy_j[name] == pytest.approx(expected, rel=1e-9, abs=1e-3)
-        assert ledger.as_dict()[f"{name}_kwh"] == pytest.approx(expected / 3.6e6, rel=1e-9, abs=1e-9)
-
-
-@settings(deadline=None, derandomize=True)
-@given(seed=SEEDS, which=st.integers(0, 9), gap_w=st.sampled_from([1.0, -1.0, 1e3, np.nan]))
-def test_a_step_that_does_not_close_is_seen(seed, which, gap_w):
-    steps = random_steps(np.random.default_rng(seed), 10)
-    steps["source_w"][which] += gap_w
-    ledger = ElectricLedger()
-    ledger.add(steps, 1.0)
-    assert not ledger.closes
-    if np.isfinite(gap_w):
-        assert ledger.worst_gap_w == pytest.approx(abs(gap_w), rel=1e-6)
+from tractionpower.results.extremes import Extremes
+from tractionpower.results.key_figures import KeyFigure, load_figures, substation_figures
 
 
 def test_a_key_figure_is_written_with_its_unit():
     figure = KeyFigure("lowest_voltage_v", 3000.0, "km 5", "00:01:00", "lowest").as_dict()
     assert list(figure) == ["name", "value", "unit", "place", "time", "definition", "status"]
     assert figure["unit"] == "V"
+
+
+def test_powers_become_kilowatts_and_energies_kilowatt_hours():
+    time_s = np.array([0.0, 0.5, 1.0, 1.5])
+    power, current = Extremes(1), Extremes(1)
+    power.add(time_s, np.array([[1.0e6], [3.0e6], [2.0e6], [0.0]]))
+    current.add(time_s, np.array([[300.0], [1000.0], [600.0], [0.0]]))
+    figures = {figure.name: figure for figure in substation_figures(["A"], current, power, 0.5)}
+    assert figures["highest_power_kw"].value == 3000.0
+    assert figures["highest_power_kw"].time == "00:00:00.5"
+    assert figures["energy_kwh"].value == pytest.approx(3.0e6 / 3.6e6)
+    assert figures["rms_current_a"].value == pytest.approx(np.sqrt(np.mean(np.array([300.0, 1000.0, 600.0, 0.0]) ** 2)))
+    (load,) = load_figures(["depot"], power, 0.5)
+    assert (load.place, load.value) == ("load depot", pytest.approx(3.0e6 / 3.6e6))

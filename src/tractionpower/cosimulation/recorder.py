@@ -5,16 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tractionpower.cosimulation.events import EventLog
 from tractionpower.kernels.network import FLAG_A
-from tractionpower.kernels.tables import Buffers
+from tractionpower.kernels.tables import Buffers, take_rows
 from tractionpower.model.base import format_time
 from tractionpower.model.limits import find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.columns import TABLES
-from tractionpower.results.key_figures import ElectricLedger, Extremes, KeyFigure
+from tractionpower.results.extremes import Array, Extremes
+from tractionpower.results.key_figures import ledger_figures, load_figures, substation_figures, voltage_figure
+from tractionpower.results.ledgers import ElectricLedger
 from tractionpower.results.tables import feeders_table, loads_table, make_table, substations_table
 from tractionpower.supply.characteristics import no_load_voltage
 from tractionpower.supply.compile import SupplyTables
@@ -34,6 +35,9 @@ class Recorder:
         self.figures_from_s = clock.start + (clock.warm_up or 0.0)
         wanted = scenario.output.tables
         self.wanted = set(TABLES if wanted is None else wanted)
+        feeds = supply.source_port >= 0
+        self.no_load_v = np.where(feeds, [no_load_voltage(s) for s in supply.substations], np.nan)
+        self.dissipative_ohm = np.array([_given(s.dissipative_resistance_ohm) for s in supply.substations])
         self.substation_a = Extremes(len(supply.substations))
         self.substation_w = Extremes(len(supply.substations))
         self.load_v, self.load_w = Extremes(len(supply.loads)), Extremes(len(supply.loads))
@@ -47,41 +51,39 @@ class Recorder:
     def add(self, first_step: int, rows: int, buffers: Buffers) -> None:
         """Take the first `rows` of `buffers`; they are the steps from `first_step` on."""
         number = np.arange(first_step, first_step + rows)
-        time_s = self.scenario.clock.start + number * self.step_s
-        steps, *series = (array[:rows] for array in buffers)
-        self._note(time_s, steps, *series)
+        time_s: Array = self.scenario.clock.start + number.astype(float) * self.step_s
+        taken = take_rows(buffers, slice(rows))
+        self._note(time_s, taken)
         written = number % self.every == 0
-        self._write(time_s[written], *(array[written] for array in series))
+        self._write(time_s[written], take_rows(taken, written))
 
-    def _note(self, time_s: Any, steps: Any, source_v: Any, source_a: Any, load_v: Any, load_a: Any, *more: Any) -> None:
-        self.worst_a = max(self.worst_a, float(steps["worst_a"].max()))
-        self.iterations += int(steps["iterations"].sum())
-        self.steps += len(steps)
-        self.ledger.add(steps, self.step_s)
-        self.events.add(time_s, steps)
+    def _note(self, time_s: Array, rows: Buffers) -> None:
+        self.worst_a = max(self.worst_a, float(rows.steps["worst_a"].max()))
+        self.iterations += int(rows.steps["iterations"].sum())
+        self.steps += len(rows.steps)
+        self.ledger.add(rows.steps, self.step_s)
+        self.events.add(time_s, rows.steps)
         counted = time_s >= self.figures_from_s - 1e-9
-        t = time_s[counted]
-        self.substation_a.add(t, source_a[counted])
-        self.substation_w.add(t, np.nan_to_num(source_v[counted]) * source_a[counted])
-        self.load_v.add(t, load_v[counted])
-        self.load_w.add(t, (load_v * load_a)[counted])
-        self.section_v.add(t, more[1][counted])
+        t, rows = time_s[counted], take_rows(rows, counted)
+        self.substation_a.add(t, rows.source_a)
+        self.substation_w.add(t, np.nan_to_num(rows.source_v) * rows.source_a)
+        self.load_v.add(t, rows.load_v)
+        self.load_w.add(t, rows.load_v * rows.load_a)
+        self.section_v.add(t, rows.section_v)
 
-    def _write(self, time_s: Any, source_v: Any, source_a: Any, load_v: Any, load_a: Any, *more: Any) -> None:
-        supply = self.supply
+    def _write(self, time_s: Array, rows: Buffers) -> None:
+        supply, append = self.supply, self.writer.append
         if "substations" in self.wanted and supply.substations:
-            feeds = supply.source_port >= 0
-            no_load = np.where(feeds, [no_load_voltage(s) for s in supply.substations], np.nan)
-            dissipative = [np.nan if s.dissipative_resistance_ohm is None else s.dissipative_resistance_ohm
-                           for s in supply.substations]  # fmt: skip
-            names = [s.id for s in supply.substations]
-            rows = substations_table(time_s, names, no_load, np.array(dissipative), source_v, source_a)
-            self.writer.append("substations", rows)
+            names = [substation.id for substation in supply.substations]
+            append(
+                "substations",
+                substations_table(time_s, names, self.no_load_v, self.dissipative_ohm, rows.source_v, rows.source_a),
+            )
         if "feeders" in self.wanted and supply.feeders:
             feeders = [(feeder.substation, feeder.track, feeder.side) for feeder in supply.feeders]
-            self.writer.append("feeders", feeders_table(time_s, feeders, more[0]))
+            append("feeders", feeders_table(time_s, feeders, rows.feeder_a))
         if "loads" in self.wanted and supply.loads:
-            self.writer.append("loads", loads_table(time_s, [load.id for load in supply.loads], load_v, load_a))
+            append("loads", loads_table(time_s, [load.id for load in supply.loads], rows.load_v, rows.load_a))
 
     def close(self) -> None:
         """Write the tables that are known at the end only."""
@@ -179,41 +181,16 @@ class Recorder:
         """Return the key figures of the run."""
         if not self.section_v.count:
             return []
-        figures = [_voltage_figure("lowest", self._lowest()), _voltage_figure("highest", self._highest())]
-        hours = self.section_v.count * self.step_s / 3600.0
-        for k, substation in enumerate(self.supply.substations):
-            figures += _substation_figures(substation.id, self.substation_a, self.substation_w, k, hours)
-        for k, load in enumerate(self.supply.loads):
-            energy = self.load_w.mean[k] * hours / 1000.0
-            figures.append(KeyFigure("load_energy_kwh", energy, f"load {load.id}", definition="sum of U I over the steps"))
-        names = {
-            "source": ("source_energy_kwh", "sum of E I over the whole run"),
-            "regulation": ("regulation_energy_kwh", "sum of (E - U) I over the whole run"),
-            "conductor": ("line_loss_kwh", "heat in contact lines, return circuit and feeders over the whole run"),
-        }
-        for name, (title, definition) in names.items():
-            figures.append(KeyFigure(title, self.ledger.energy_j[name] / 3.6e6, definition=definition))
+        substations = [substation.id for substation in self.supply.substations]
+        figures = [
+            voltage_figure("lowest", *self._lowest()),
+            voltage_figure("highest", *self._highest()),
+            *substation_figures(substations, self.substation_a, self.substation_w, self.step_s),
+            *load_figures([load.id for load in self.supply.loads], self.load_w, self.step_s),
+            *ledger_figures(self.ledger),
+        ]
         return [figure.as_dict() for figure in figures]
 
 
-def _voltage_figure(which: str, found: tuple[float, str, float]) -> KeyFigure:
-    value, place, when = found
-    return KeyFigure(
-        f"{which}_voltage_v", float(value), place, format_time(when),
-        f"{which} voltage between contact line and rail at cross-sections and loads",
-    )  # fmt: skip
-
-
-def _substation_figures(name: str, current: Extremes, power: Extremes, k: int, hours: float) -> list[KeyFigure]:
-    place = f"substation {name}"
-
-    def figure(title: str, value: NDArray[np.float64] | float, definition: str, when: float | None = None) -> KeyFigure:
-        return KeyFigure(title, float(value), place, "" if when is None else format_time(when), definition)
-
-    return [
-        figure("highest_current_a", current.highest[k], "highest mean of a step", current.highest_s[k]),
-        figure("mean_current_a", current.mean[k], "mean over the run"),
-        figure("rms_current_a", current.rms[k], "root of the mean square over the run"),
-        figure("highest_power_kw", power.highest[k] / 1000.0, "highest mean of a step, U I", power.highest_s[k]),
-        figure("energy_kwh", power.mean[k] * hours / 1000.0, "sum of U I over the steps"),
-    ]
+def _given(value: float | None) -> float:
+    return np.nan if value is None else value

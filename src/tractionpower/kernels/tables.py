@@ -305,3 +305,8 @@ def new_buffers(tables: BlockTables, rows: int) -> Buffers:
     sources, loads = len(tables.sources), len(tables.loads)
     widths = (sources, sources, loads, loads, len(tables.feeder_end), len(tables.sections))
     return Buffers(np.zeros(rows, STEP_RESULT), *(np.zeros((rows, width)) for width in widths))
+
+
+def take_rows(buffers: Buffers, rows: slice | NDArray[np.bool_]) -> Buffers:
+    """Return some rows of all buffers."""
+    return Buffers(*(array[rows] for array in buffers))

@@ -1,16 +1,21 @@
-"""Key figures, gathered while the run lasts, over every step whether its row is written or not."""
+"""Key figures: what sums a run up. Here watts and joules of the sums become kilowatts and kilowatt hours."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from tractionpower.model.base import format_time
 from tractionpower.model.quantity import unit_of
+from tractionpower.results.extremes import Extremes
+from tractionpower.results.ledgers import ElectricLedger
 
-Array = NDArray[np.float64]
+LEDGER_FIGURES = {
+    "source": ("source_energy_kwh", "sum of E I over the whole run"),
+    "regulation": ("regulation_energy_kwh", "sum of (E - U) I over the whole run"),
+    "conductor": ("line_loss_kwh", "heat in contact lines, return circuit and feeders over the whole run"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,86 +51,33 @@ class KeyFigure:
         }
 
 
-def add_up(total: Array, values: Array) -> Array:
-    """Return `total` plus all rows of `values`, added one after the other: the sum does not depend on how many come at a time."""
-    return np.asarray(np.cumsum(np.concatenate([total[np.newaxis], values]), axis=0)[-1])
+def voltage_figure(which: str, value: float, place: str, when_s: float) -> KeyFigure:
+    """Return the ``lowest`` or ``highest`` voltage [V] of a run, with its place and time [s]."""
+    definition = f"{which} voltage between contact line and rail at cross-sections and loads"
+    return KeyFigure(f"{which}_voltage_v", float(value), place, format_time(when_s), definition)
 
 
-class Extremes:
-    """Lowest, highest and mean of several series, with the time of the extremes.
-
-    Parameters
-    ----------
-    width
-        Number of series.
-    """
-
-    def __init__(self, width: int) -> None:
-        self.lowest, self.highest = np.full(width, np.inf), np.full(width, -np.inf)
-        self.lowest_s, self.highest_s = np.full(width, np.nan), np.full(width, np.nan)
-        self.total, self.squares = np.zeros(width), np.zeros(width)
-        self.count = 0
-
-    def add(self, time_s: Array, values: Array) -> None:
-        """Add rows: times [s], shape (steps,), and values, shape (steps, width)."""
-        if not values.size:
-            return
-        columns = np.arange(values.shape[1])
-        for pick, best, when, better in (
-            (values.argmin(axis=0), self.lowest, self.lowest_s, np.less),
-            (values.argmax(axis=0), self.highest, self.highest_s, np.greater),
-        ):
-            found = values[pick, columns]
-            new = better(found, best)
-            best[new], when[new] = found[new], time_s[pick][new]
-        self.total = add_up(self.total, values)
-        self.squares = add_up(self.squares, values**2)
-        self.count += len(values)
-
-    @property
-    def mean(self) -> Array:
-        """Mean of each series."""
-        return self.total / max(self.count, 1)
-
-    @property
-    def rms(self) -> Array:
-        """Root of the mean square of each series."""
-        return np.asarray(np.sqrt(self.squares / max(self.count, 1)))
+def substation_figures(names: Sequence[str], current: Extremes, power: Extremes, step_s: float) -> Iterator[KeyFigure]:
+    """Yield the figures of all substations from their currents [A] and powers [W] in steps of `step_s`."""
+    energy_j = power.total * step_s
+    for k, name in enumerate(names):
+        place = f"substation {name}"
+        when = format_time(current.highest_s[k])
+        yield KeyFigure("highest_current_a", float(current.highest[k]), place, when, "highest mean of a step")
+        yield KeyFigure("mean_current_a", float(current.mean[k]), place, "", "mean over the run")
+        yield KeyFigure("rms_current_a", float(current.rms[k]), place, "", "root of the mean square over the run")
+        when = format_time(power.highest_s[k])
+        yield KeyFigure("highest_power_kw", float(power.highest[k]) / 1000.0, place, when, "highest mean of a step, U I")
+        yield KeyFigure("energy_kwh", float(energy_j[k]) / 3.6e6, place, "", "sum of U I over the steps")
 
 
-class ElectricLedger:
-    """The electric ledger of a run: sum E I = trains + loads + line + regulation, in every step.
+def load_figures(names: Sequence[str], power: Extremes, step_s: float) -> Iterator[KeyFigure]:
+    """Yield the energy of all loads from their powers [W] in steps of `step_s`."""
+    for name, energy_j in zip(names, power.total * step_s, strict=True):
+        yield KeyFigure("load_energy_kwh", float(energy_j) / 3.6e6, f"load {name}", "", "sum of U I over the steps")
 
-    A step closes within 1e-9 of the gross power exchanged plus 1 mW.
-    """
 
-    NAMES = ("source", "regulation", "load", "conductor")
-
-    def __init__(self) -> None:
-        self._total = np.zeros(len(self.NAMES))
-        self.worst_gap_w = self.worst_share = 0.0
-
-    def add(self, steps: NDArray[np.void], step_s: float) -> None:
-        """Add the results of steps, records of `tractionpower.kernels.tables.STEP_RESULT`."""
-        powers = np.stack([steps[f"{name}_w"] for name in self.NAMES], axis=1)
-        self._total = add_up(self._total, powers * step_s)
-        gap = np.abs(steps["source_w"] - steps["regulation_w"] - steps["load_w"] - steps["conductor_w"])
-        gap[np.isnan(gap)] = np.inf  # not a number must not pass for a balance
-        if gap.size:
-            self.worst_gap_w = max(self.worst_gap_w, float(gap.max()))
-            self.worst_share = max(self.worst_share, float((gap / (1e-9 * np.nan_to_num(steps["gross_w"]) + 1e-3)).max()))
-
-    @property
-    def energy_j(self) -> dict[str, float]:
-        """Energies by name [J]."""
-        return dict(zip(self.NAMES, self._total.tolist(), strict=True))
-
-    @property
-    def closes(self) -> bool:
-        """Whether every step closes."""
-        return self.worst_share <= 1.0
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return energies [kWh] and the worst gap [W]."""
-        energies = {f"{name}_kwh": joule / 3.6e6 for name, joule in self.energy_j.items()}
-        return {"closes": self.closes, "worst_gap_w": self.worst_gap_w} | energies
+def ledger_figures(ledger: ElectricLedger) -> Iterator[KeyFigure]:
+    """Yield the energies of the electric ledger that no device's figure tells."""
+    for name, (title, definition) in LEDGER_FIGURES.items():
+        yield KeyFigure(title, ledger.energy_j[name] / 3.6e6, definition=definition)
