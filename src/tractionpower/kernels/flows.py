@@ -28,7 +28,8 @@ def conductor_flows(network, work, balance):
     worst : float
         Largest imbalance of a node inside a span [A].
     """
-    balance[:] = 0.0
+    for k in range(balance.shape[0]):
+        balance[k] = 0.0
     loss = worst = 0.0
     for s in range(network.spans.shape[0]):
         span = network.spans[s]

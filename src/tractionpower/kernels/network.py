@@ -51,8 +51,10 @@ def solve_linear(network, work):
         Whether the matrix is positive definite. If not, nothing may be used.
     """
     value, node_v = work.value, work.node_v
-    value[:] = work.step_base
-    node_v[:] = 0.0
+    for k in range(value.shape[0]):
+        value[k] = work.step_base[k]
+    for k in range(node_v.shape[0]):
+        node_v[k] = 0.0
     for p in range(network.ports.shape[0]):
         port = network.ports[p]
         if port.span < 0:

@@ -70,7 +70,8 @@ def _attach(network, work, side, c, port):
 def _finish_conductors(network, work):
     """Set the last conductance of every conductor; those without ports go into the base of this step."""
     base = work.step_base
-    base[:] = network.base
+    for k in range(base.shape[0]):
+        base[k] = network.base[k]
     row = 0
     for s in range(network.spans.shape[0]):
         span = network.spans[s]
