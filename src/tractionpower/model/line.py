@@ -62,6 +62,13 @@ class Curve(Stretch):
     tracks: Tracks | None = Field(default=None, description=_TRACKS)
 
 
+class CurveResistance(Declaration):
+    """Resistance in curves, a/(R - b) in N/kN; left out: 650/(R - 55), and 500/(R - 30) below 300 m (Roeckl)."""
+
+    a: Real = Field(ge=0, description="Numerator [N/kN m].")
+    b_m: Real = field("b_m", "What is taken from the radius.", at_least=0, default=0.0)
+
+
 class Tunnel(Stretch):
     """Tunnel, by its number of tracks."""
 
@@ -127,6 +134,9 @@ class Line(Declaration):
         default=(), description="Slopes; left out: level. Given: every named track is covered end to end."
     )
     curves: tuple[Curve, ...] = Field(default=(), description="Horizontal curves; only what exists.")
+    curve_resistance: CurveResistance | None = Field(
+        default=None, description="Resistance in curves; left out: Roeckl's formula."
+    )
     tunnels: tuple[Tunnel, ...] = Field(default=(), description="Tunnels; only what exists.")
     speed_limits: tuple[SpeedLimit, ...] = Field(
         default=(), description="Speed limits; must cover the tracks that trains run on."

@@ -16,12 +16,19 @@ REQUIRED: Any = ...
 # The unit is the end of the name; the longest suffix wins. Times of day carry no suffix, their type says how they are written.
 UNITS: dict[str, str] = {
     "ohm_per_km": "Ω/km",
+    "n_per_kn_per_kmh2": "N/kN/(km/h)²",
+    "n_per_kn_per_kmh": "N/kN/(km/h)",
+    "n_per_kn": "N/kN",
+    "n_per_kmh2": "N/(km/h)²",
+    "n_per_kmh": "N/(km/h)",
+    "vs_per_rev": "V s/rev",
     "per_km": "1/km",
     "percent": "%",
     "permille": "‰",
     "kmh": "km/h",
     "mps2": "m/s²",
     "kwh": "kWh",
+    "kn": "kN",
     "ohm": "Ω",
     "km": "km",
     "kw": "kW",
@@ -31,6 +38,7 @@ UNITS: dict[str, str] = {
     "v": "V",
     "a": "A",
     "t": "t",
+    "n": "N",
 }
 
 

@@ -14,6 +14,8 @@ from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.quantity import field
 from tractionpower.model.supply import Supply
+from tractionpower.model.timetable import Timetable
+from tractionpower.model.vehicle import Train, Vehicle
 
 
 class Clock(Declaration):
@@ -40,13 +42,6 @@ class Output(Declaration):
 
     every_s: Real | None = field("every_s", "Interval of the rows; left out: every step.", above=0, default=None)
     tables: tuple[Text, ...] | None = Field(default=None, description="Tables to write; left out: all.")
-
-
-class Timetable(Declaration):
-    """The scheduled timetable (RJ). This version computes networks: it has no trains yet."""
-
-    format: Format = 1
-    trains: tuple[()] = ()
 
 
 class StudyFile(Declaration):
@@ -79,6 +74,8 @@ class Scenario(Declaration):
     line: Line
     supply: Supply
     timetable: Timetable = Timetable()
+    trains: tuple[Train, ...] = ()
+    vehicles: tuple[Vehicle, ...] = ()
     clock: Clock
     coupling: Literal["full", "constant_voltage"] = "full"
     coupling_voltage_v: Real | None = None
