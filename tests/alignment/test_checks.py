@@ -7,6 +7,7 @@ from tractionpower.model.line import (
     ChainageBreak,
     Connection,
     Curve,
+    CurveResistance,
     Gradient,
     Line,
     PowerOff,
@@ -140,6 +141,13 @@ def test_rows_of_a_category_serve_only_its_trains(line):
     assert_only(
         line(speed_limits=limits), "gap", "line.speed_limits", "category freight serve only its trains", severity="warning"
     )
+
+
+def test_a_curve_at_whose_radius_the_formula_of_the_line_has_no_value(line):
+    words = ("at a radius of 500 m", "allowed: above b = 500 m", "line.curve_resistance.b_m")
+    formula = CurveResistance(a=700.0, b_m=500.0)
+    assert_only(line(curve_resistance=formula), "curve_radius", "line.curves[1].radius_m", *words)
+    assert check_line(line(curve_resistance=CurveResistance(a=700.0, b_m=499.0))) == []
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,7 @@ def check_line(line: Line) -> list[Problem]:
         problems += check_rows(f"line.{name}", getattr(line, name), axes)
     for name in ("gradients", "curves", "tunnels"):
         problems += check_overlaps(f"line.{name}", getattr(line, name), axes)
+    problems += _check_curve_radii(line)
     problems += _check_gradient_gaps(line, axes)
     problems += _check_speed_gaps(line.speed_limits, axes)
     problems += _check_connections(line, axes)
@@ -167,6 +168,24 @@ def _stop_track(key: str, axes: Axes) -> str:
     """Return the track that a key of `stop_km` names, such as ``1`` or ``1 increasing``."""
     track, _, direction = key.rpartition(" ")
     return track if key not in axes and direction in get_args(Direction) else key
+
+
+def _check_curve_radii(line: Line) -> list[Problem]:
+    """Return a problem for each curve at whose radius the formula a/(R - b) of the line has no value."""
+    if line.curve_resistance is None:  # the radii that Roeckl's formula takes are the bounds of the field itself
+        return []
+    least = line.curve_resistance.b_m
+    return [
+        Problem(
+            "curve_radius",
+            f"line.curves[{index}].radius_m",
+            f"the curve resistance a/(R - b) has no value at a radius of {curve.radius_m:g} m",
+            f"above b = {least:g} m",
+            "correct the radius, or line.curve_resistance.b_m",
+        )
+        for index, curve in enumerate(line.curves)
+        if curve.radius_m <= least
+    ]
 
 
 def _check_gradient_gaps(line: Line, axes: Axes) -> list[Problem]:

@@ -1,0 +1,336 @@
+"""The motion of one train over one step (Krzysztozek 2019, eq. 1 and 2), split wherever something happens inside it.
+
+    M dv/dt = F - B - W_p(v) - W_d(s),   ds/dt = v
+
+A step is cut into phases: standing, accelerating at the greatest effort below the speed ceiling, following the ceiling at
+constant speed or down a braking curve. In a phase the acceleration is constant, forces are taken at its mean speed and
+middle place, so that force times distance is exactly the change of kinetic energy. In a phase v2 is linear in s, and so is
+the ceiling: they meet in a closed form.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tractionpower.kernels.effort import efficiency_at, greatest_effort
+from tractionpower.kernels.jit import inlined
+from tractionpower.kernels.train_tables import (
+    ACCELERATING,
+    BRAKING,
+    BY_DRIVE,
+    BY_NOTHING,
+    BY_SPEED,
+    CRUISING,
+    DWELLING,
+    GONE,
+    HOLDING,
+    INVERTER,
+    LEAVE,
+    OUTSIDE,
+    RUNNING,
+    STANDING,
+    STAY,
+    STAYING,
+    UNPOWERED,
+)
+from tractionpower.kernels.wayside import additional_resistance, note_calls
+
+TINY_S = 1e-9
+"""Rest of a step that is not worth a phase [s]."""
+
+HERE_M = 1e-6
+"""A front this near to a place is there [m]."""
+
+_ON_CEILING = 1e-10
+_MOST_PHASES = 200
+_NEWTON_STEPS = 30
+
+
+@inlined
+def run_step(tables, train, mover, tally, clock, cap_w, called):
+    """Move a train over one step.
+
+    Parameters
+    ----------
+    tables : TrainTables
+    train, mover, tally : records of TRAIN, MOVER, TALLY
+        `mover` is moved, `tally` is filled.
+    clock : tuple
+        Start [s] and length [s] of the step.
+    cap_w : float
+        Largest tractive power at the wheel [W]; infinite: only the drive and adhesion limit it.
+    called : tuple
+        Arrays of arrivals and departures by row of the stops [s], which are written.
+    """
+    _clear(tally)
+    now, end = clock[0], clock[0] + clock[1]
+    for _ in range(_MOST_PHASES):
+        left = end - now
+        if left <= TINY_S or mover.status == GONE:
+            break
+        if mover.status == OUTSIDE:
+            if train.start_s >= end - TINY_S:
+                break
+            now = max(now, train.start_s)
+            mover.status = RUNNING
+            continue
+        if mover.status == RUNNING and _arrive(tables, train, mover, now, called):
+            continue
+        if mover.status == RUNNING:
+            spent = _run(tables, train, mover, tally, (now, left), cap_w, called)
+        else:
+            spent = _stand(tables, train, mover, tally, (now, left), called)
+        tally.on_line_s += spent
+        now += spent
+
+
+@inlined
+def _clear(tally):
+    tally.traction_ns = tally.traction_j = tally.line_j = 0.0
+    tally.brake_ns = tally.brake_j = tally.electric_ns = tally.electric_j = 0.0
+    tally.resistance_ns = tally.resistance_j = tally.wished_ns = 0.0
+    tally.moved_m = tally.moving_s = tally.on_line_s = 0.0
+    tally.phase, tally.limited_by = -1, BY_NOTHING
+
+
+@inlined
+def _arrive(tables, train, mover, now, called):
+    """End the run of a train that is at a stop or at the end of its route; tell whether it is."""
+    if mover.stop < train.stops:
+        row = train.first_stop + mover.stop
+        stop = tables.stops[row]
+        if stop.stops and stop.at_m - mover.s_m <= HERE_M:
+            called[0][row] = now
+            mover.s_m, mover.v_mps, mover.status = stop.at_m, 0.0, STANDING
+            mover.leave_s = max(now + stop.dwell_s, stop.departure_s)
+            return True
+        if stop.at_m - mover.s_m <= HERE_M:
+            called[0][row] = called[1][row] = now
+            mover.stop += 1
+            return True
+    if train.route_m - mover.s_m <= HERE_M:
+        mover.s_m = train.route_m
+        _finish(train, mover, now)
+        return True
+    return False
+
+
+@inlined
+def _stand(tables, train, mover, tally, time, called):
+    """Let a train stand until it may leave; return the time spent [s]."""
+    now, left = time
+    if tally.phase < 0:
+        tally.phase = DWELLING
+    if mover.status == STAYING or mover.leave_s >= now + left:
+        return left
+    row = train.first_stop + mover.stop
+    spent = max(mover.leave_s - now, 0.0)
+    called[1][row] = now + spent
+    mover.stop += 1
+    mover.status = RUNNING
+    if mover.stop == train.stops and train.end != LEAVE and train.route_m - mover.s_m <= HERE_M:
+        _finish(train, mover, now + spent)
+    return spent
+
+
+@inlined
+def _finish(train, mover, now):
+    mover.status = STAYING if train.end == STAY else GONE
+    mover.finished_s = now
+
+
+@inlined
+def _run(tables, train, mover, tally, time, cap_w, called):
+    """Run one phase; return the time spent [s]."""
+    pieces, p = tables.pieces, train.first_piece + mover.piece
+    last = train.first_piece + train.pieces - 1
+    while p < last - 1 and pieces[p + 1].from_m <= mover.s_m:
+        p += 1
+    mover.piece = p - train.first_piece
+    piece = pieces[p]
+    ceiling = piece.w + piece.dw * (mover.s_m - piece.from_m)
+    w = mover.v_mps * mover.v_mps
+    if w < ceiling - _ON_CEILING * (1.0 + ceiling) or mover.v_mps == 0.0:
+        now, left = time
+        middle = mover.s_m + 0.5 * mover.v_mps * left
+        return _accelerate(tables, train, mover, tally, (now, left, middle, True), cap_w, called)
+    return _follow(tables, train, mover, tally, time, cap_w, called)
+
+
+@inlined
+def _resistance(train, track, v):
+    """Return the resistance [N] and its derivative [N s/m] at the speed `v`, with the additional one of the place."""
+    drag = train.c_ns2_per_m2 + track[1]
+    return train.a_n + track[0] + (train.b_ns_per_m + drag * v) * v, train.b_ns_per_m + 2.0 * drag * v
+
+
+@inlined
+def _effort(tables, train, mover, v, cap_w):
+    """Return effort [N], its derivative and what limits it, below the power `cap_w` [W] at the wheel as well."""
+    effort, slope, by = greatest_effort(tables, train, mover, v)
+    if effort * v > cap_w:
+        effort = cap_w / v
+        slope = -effort / v
+    return effort, slope, by
+
+
+@inlined
+def _balance(tables, train, mover, track, tau, cap_w):
+    """Return effort and resistance [N] at the mean speed [m/s] that they lead to within `tau` [s], and what limits it.
+
+    The mean speed solves v_m = v + (F(v_m) - W(v_m)) tau / 2 M: the implicit midpoint rule, by Newton's method.
+    """
+    v = mover.v_mps
+    half = 0.5 * tau / train.inertia_kg
+    mean = v
+    effort, resistance, by = 0.0, 0.0, BY_DRIVE
+    for _ in range(_NEWTON_STEPS):
+        effort, slope, by = _effort(tables, train, mover, mean, cap_w)
+        resistance, rise = _resistance(train, track, mean)
+        gap = v + half * (effort - resistance) - mean
+        change = gap / (1.0 - half * (slope - rise))
+        mean = max(mean + change, 0.0)
+        if abs(change) <= 1e-12 * (1.0 + v):
+            break
+    return mean, effort, resistance, by
+
+
+@inlined
+def _accelerate(tables, train, mover, tally, time, cap_w, called):
+    """Run with the greatest effort until the time is up, the ceiling is met, the route ends or the train comes to a stand.
+
+    `time` holds now, the time left, where the middle of the way will be [m], and whether the ceiling can be met.
+    """
+    now, tau, middle, free = time
+    v = mover.v_mps
+    track = additional_resistance(tables, train, mover, middle)
+    mean, effort, resistance, by = _balance(tables, train, mover, track, tau, cap_w)
+    if v == 0.0 and mean <= 0.0:
+        _mark(tally, HOLDING if effort > 0.0 else UNPOWERED, by)
+        tally.wished_ns += train.start_n * tau
+        return tau
+    acceleration = (effort - resistance) / train.inertia_kg
+    spent, speed = tau, v + acceleration * tau
+    if speed < 0.0:
+        spent, speed = -v / acceleration, 0.0
+    distance = 0.5 * (v + speed) * spent
+    if free:
+        distance, spent, speed = _meet_ceiling(tables, train, mover, acceleration, (distance, spent, speed))
+    _mark(tally, ACCELERATING if effort > 0.0 else UNPOWERED, BY_NOTHING if effort >= train.start_n else by)
+    tally.wished_ns += train.start_n * spent
+    _tally_traction(tables, train, mover, tally, effort, (distance, spent))
+    _tally_resistance(tally, resistance, distance, spent)
+    _advance(tables, train, mover, called, (now, distance, acceleration), speed)
+    return spent
+
+
+@inlined
+def _meet_ceiling(tables, train, mover, acceleration, way):
+    """Shorten a way (distance, time, speed at its end) to where it meets the ceiling or the end of the route."""
+    distance, spent, speed = way
+    pieces, s, w = tables.pieces, mover.s_m, mover.v_mps * mover.v_mps
+    last = train.first_piece + train.pieces - 1
+    for q in range(train.first_piece + mover.piece, last):
+        piece = pieces[q]
+        until = min(pieces[q + 1].from_m, s + distance)
+        ceiling = piece.w + piece.dw * (until - piece.from_m)
+        if w + 2.0 * acceleration * (until - s) > ceiling:
+            closing = 2.0 * acceleration - piece.dw
+            met = until
+            if closing > 0.0:
+                met = (piece.w - piece.dw * piece.from_m - w + 2.0 * acceleration * s) / closing
+                met = min(max(met, piece.from_m, s), until)
+            top = np.sqrt(max(piece.w + piece.dw * (met - piece.from_m), 0.0))
+            return met - s, _time_of(met - s, mover.v_mps, top), top
+        if pieces[q + 1].from_m >= s + distance:
+            return distance, spent, speed
+    rest = train.route_m - s  # the front leaves the route within the step
+    top = np.sqrt(max(w + 2.0 * acceleration * rest, 0.0))
+    return rest, _time_of(rest, mover.v_mps, top), top
+
+
+@inlined
+def _time_of(distance, v, speed):
+    return 2.0 * distance / (v + speed) if v + speed > 0.0 else 0.0
+
+
+@inlined
+def _follow(tables, train, mover, tally, time, cap_w, called):
+    """Follow the ceiling to the end of its piece or of the time; fall below it where the effort is too small."""
+    now, left = time
+    p = train.first_piece + mover.piece
+    piece, end = tables.pieces[p], tables.pieces[p + 1].from_m
+    v, slowing = mover.v_mps, -0.5 * piece.dw
+    final = np.sqrt(max(piece.w + piece.dw * (end - piece.from_m), 0.0))
+    spent = _time_of(end - mover.s_m, v, final)
+    speed, distance = final, end - mover.s_m
+    if spent > left:
+        spent, speed = left, v - slowing * left
+        distance = 0.5 * (v + speed) * spent
+    mean, middle = 0.5 * (v + speed), mover.s_m + 0.5 * distance
+    track = additional_resistance(tables, train, mover, middle)
+    resistance, _ = _resistance(train, track, mean)
+    needed = resistance - train.inertia_kg * slowing
+    if needed > 0.0:
+        effort, _, _ = _effort(tables, train, mover, mean, cap_w)
+        if needed > effort:
+            return _accelerate(tables, train, mover, tally, (now, spent, middle, False), cap_w, called)
+        _tally_traction(tables, train, mover, tally, needed, (distance, spent))
+    else:
+        _tally_brake(train, tally, -needed, distance, spent)
+    _mark(tally, CRUISING if slowing == 0.0 else BRAKING, BY_SPEED if slowing == 0.0 else BY_NOTHING)
+    tally.wished_ns += needed * spent
+    _tally_resistance(tally, resistance, distance, spent)
+    _advance(tables, train, mover, called, (now, distance, -slowing), speed)
+    return spent
+
+
+@inlined
+def _advance(tables, train, mover, called, way, speed):
+    note_calls(tables, train, mover, called, way)
+    mover.s_m += way[1]
+    mover.v_mps = speed
+
+
+@inlined
+def _mark(tally, phase, by):
+    """Note the first phase of the step and what limits the effort in it."""
+    if tally.phase < 0:
+        tally.phase, tally.limited_by = phase, by
+
+
+@inlined
+def _tally_traction(tables, train, mover, tally, effort, way):
+    distance, spent = way
+    work = effort * distance
+    tally.traction_ns += effort * spent
+    tally.traction_j += work
+    if train.drive != INVERTER:
+        tally.line_j += work
+    elif train.map_loads == 0:
+        tally.line_j += work / train.efficiency
+    elif work > 0.0:
+        mean = distance / spent
+        share = effort / greatest_effort(tables, train, mover, mean)[0]
+        tally.line_j += work / efficiency_at(tables, train, mean, share)
+
+
+@inlined
+def _tally_brake(train, tally, effort, distance, spent):
+    """Add the brakes; the electric one gives what it can at the mean speed."""
+    mean = distance / spent if spent > 0.0 else 0.0
+    electric = 0.0
+    if mean > train.brake_from_mps and mean > 0.0:
+        electric = min(effort, train.brake_n, train.brake_w / mean)
+    tally.brake_ns += effort * spent
+    tally.brake_j += effort * distance
+    tally.electric_ns += electric * spent
+    tally.electric_j += electric * distance
+
+
+@inlined
+def _tally_resistance(tally, resistance, distance, spent):
+    tally.resistance_ns += resistance * spent
+    tally.resistance_j += resistance * distance
+    tally.moved_m += distance
+    tally.moving_s += spent

@@ -1,0 +1,200 @@
+"""What a train takes from the line and gives back at a voltage: auxiliaries, current limits, braking."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tractionpower.kernels.effort import look_up
+from tractionpower.kernels.jit import inlined
+from tractionpower.kernels.series_motors import at_full, at_part
+from tractionpower.kernels.train_tables import (
+    BY_DRIVE,
+    BY_LINE_CURRENT,
+    BY_TRAIN_CURRENT,
+    BY_VOLTAGE,
+    INVERTER,
+    SERIES_MOTORS,
+    TABLE,
+)
+from tractionpower.kernels.wayside import line_current_limit
+
+NONE = np.inf
+
+
+@inlined
+def auxiliary_current(train, u):
+    """Return the current of the auxiliaries at the voltage `u` [A].
+
+    Constant power down to U_min2, below it P U / U_min2^2; resistive heating grows with U.
+    """
+    if u <= 0.0:
+        return 0.0
+    reduced = u / (train.lowest_v * train.lowest_v) if u < train.lowest_v else 1.0 / u
+    return train.auxiliary_w * reduced + train.heating_s * u
+
+
+@inlined
+def current_limit(tables, train, mover, u):
+    """Return the largest current of the train at the voltage `u` [A] and what sets it.
+
+    Below the knee a U_n the train's own limit falls linearly to the current of the auxiliaries at U_min2 (shape of
+    EN 50388, figure 1); the limit of the line holds as well, and the lower one wins.
+    """
+    limit, by = train.max_current_a, BY_TRAIN_CURRENT
+    if u < train.knee_v:
+        foot = auxiliary_current(train, train.lowest_v)
+        share = max((u - train.lowest_v) / (train.knee_v - train.lowest_v), 0.0)
+        limit, by = foot + (limit - foot) * share, BY_VOLTAGE
+    line = line_current_limit(tables, train, mover)
+    return (line, BY_LINE_CURRENT) if line < limit else (limit, by)
+
+
+@inlined
+def traction(tables, train, mover, need_w, u, mean_speeds):
+    """Return what traction takes at the voltage `u` where it wishes the power `need_w`.
+
+    Parameters
+    ----------
+    need_w : float
+        Wished mean power of the step [W]: of an inverter drive from the line, of others at the wheel.
+    mean_speeds : tuple
+        Speed at the start of the step [m/s], half of step over inertia [s/kg], resistance [N].
+
+    Returns
+    -------
+    power_w : float
+        What it gets, of the kind of `need_w` [W].
+    current_a, resistor_w : float
+        Current from the line [A] and heat in starting resistors [W].
+    by : int
+        What limits it, if `power_w` is less than `need_w`.
+    """
+    if u <= 0.0 or need_w <= 0.0:
+        return 0.0, 0.0, 0.0, BY_VOLTAGE
+    limit, by = current_limit(tables, train, mover, u)
+    free = max(limit - auxiliary_current(train, u), 0.0)
+    if train.drive == INVERTER:
+        power = u * free
+        if train.powers > 0:
+            table = look_up(tables.points, train.first_power, train.powers, u)[0] / train.efficiency
+            if table < power:
+                power, by = table, BY_VOLTAGE
+        power = min(power, need_w)
+        return power, power / u, 0.0, by
+    power, current, resistor = need_w, 0.0, 0.0
+    if train.drive == SERIES_MOTORS:
+        notch = tables.notches[train.first_notch + mover.notch]
+        current, most, resistor = at_full(tables, notch, u, mean_speeds)
+        if need_w < most:
+            current, resistor = at_part(tables, train, mover.notch, u, need_w, mean_speeds)
+        else:
+            power = most
+            if current <= free:
+                by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
+    elif train.drive == TABLE:
+        current, most = _table_at(tables, train, u, mean_speeds)
+        if need_w < most:
+            current *= need_w / most
+        else:
+            power = most
+            if current <= free:
+                by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
+    if current > free:  # the drive takes turns with off
+        share = free / current
+        return power * share, free, resistor * share, by
+    return power, current, resistor, by
+
+
+@inlined
+def _table_at(tables, train, u, mean_speeds):
+    """Return current [A] and power at the wheel [W] of a table drive at full effort.
+
+    Between the voltages of the table current and losses are linear in the voltage; beyond its ends effort and power are
+    those of the nearest.
+    """
+    curves, first = tables.curves, train.first_curve
+    last = first + train.curves - 1
+    n = first
+    while n < last and curves[n + 1].voltage_v <= u:
+        n += 1
+    low_i, low_w = _curve_at(tables, curves[n], mean_speeds)
+    low_u = curves[n].voltage_v
+    if n == last or u <= low_u:
+        return low_i * low_u / u, low_w
+    high_u = curves[n + 1].voltage_v
+    high_i, high_w = _curve_at(tables, curves[n + 1], mean_speeds)
+    x = (u - low_u) / (high_u - low_u)
+    current = low_i + x * (high_i - low_i)
+    low_loss, high_loss = low_u * low_i - low_w, high_u * high_i - high_w
+    return current, u * current - (low_loss + x * (high_loss - low_loss))
+
+
+@inlined
+def _curve_at(tables, curve, mean_speeds):
+    v, half, resistance = mean_speeds
+    effort, _ = look_up(tables.points, curve.first_effort, curve.efforts, v)
+    mean = max(v + half * (effort - resistance), 0.0)
+    effort, _ = look_up(tables.points, curve.first_effort, curve.efforts, mean)
+    mean = max(v + half * (effort - resistance), 0.0)
+    current, _ = look_up(tables.points, curve.first_current, curve.currents, mean)
+    return current, effort * mean
+
+
+@inlined
+def feed_back_share(train, u):
+    """Return which share of what is left of the braking power the line gets at the voltage `u`: 1, folding back to 0."""
+    if not train.regenerates or u >= train.fold_to_v:
+        return 0.0
+    if u <= train.fold_from_v:
+        return 1.0
+    return (train.fold_to_v - u) / (train.fold_to_v - train.fold_from_v)
+
+
+@inlined
+def write_row(train, tally, row, spent, u, taken):
+    """Fill what the electric side of a step says: brakes, auxiliaries, power, losses.
+
+    Fold-back acts on what is left of the braking power after the train's own needs. What the line refuses goes to the
+    braking resistors, and the rest to the friction brakes, which does not change the motion.
+
+    Parameters
+    ----------
+    spent : float
+        Length of the step [s].
+    u : float
+        Voltage [V].
+    taken : tuple
+        Power [W] of traction from the line, and heat in starting resistors [W].
+    """
+    traction_w, resistor_w = taken
+    on_line = tally.on_line_s / spent
+    auxiliary_w = u * auxiliary_current(train, u) * on_line
+    gained = train.brake_efficiency * tally.electric_j / spent
+    returned = refused = heated = 0.0
+    own = auxiliary_w + traction_w
+    if train.regenerates:
+        left = max(gained - own, 0.0)
+        returned = feed_back_share(train, u) * left
+        refused = left - returned
+        heated = min(refused, train.rheostat_w)
+        own = max(own - gained, 0.0)
+        dropped = refused - heated
+    else:
+        heated = min(gained, train.rheostat_w)
+        dropped = gained - heated
+    share = 1.0 - dropped / gained if gained > 0.0 else 0.0
+    row.voltage_v = u
+    row.power_w = own - returned
+    row.current_a = row.power_w / u if u > 0.0 else 0.0
+    row.auxiliary_w = auxiliary_w
+    row.starting_resistor_w = resistor_w
+    row.braking_resistor_w = heated
+    row.refused_w = refused
+    row.returned_w = returned
+    row.wheel_w = tally.traction_j / spent
+    row.drive_loss_w = traction_w - resistor_w - row.wheel_w
+    row.traction_n = tally.traction_ns / spent
+    row.electric_brake_n = share * tally.electric_ns / spent
+    row.friction_brake_n = tally.brake_ns / spent - row.electric_brake_n
+    row.resistance_n = tally.resistance_ns / spent
+    row.wished_n = tally.wished_ns / spent

@@ -1,0 +1,141 @@
+"""One step of one train in two halves: what it wishes, before the voltage is known, and what it does once it is.
+
+Between them the network is solved, or a voltage is given.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tractionpower.kernels.jit import inlined
+from tractionpower.kernels.motion import run_step
+from tractionpower.kernels.pantograph import traction, write_row
+from tractionpower.kernels.series_motors import at_full, choose_notch, lowest_notch
+from tractionpower.kernels.train_tables import DWELLING, INVERTER, OUTSIDE, SERIES_MOTORS, STANDING, WAITING
+from tractionpower.kernels.wayside import additional_resistance
+
+_SAME = 1e-12
+_MATCH = 1e-10
+_MOST_TRIES = 60
+
+
+@inlined
+def wish(tables, state, k, t, h):
+    """Let train `k` try the step from `t` [s] of length `h` [s] as if the voltage did not limit it.
+
+    Writes the trial and its tally; series motors choose their notch, which is held while the network is solved.
+    """
+    train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
+    called = (state.arrived_s, state.left_s)
+    state.trials[k] = mover
+    if train.drive != SERIES_MOTORS:
+        run_step(tables, train, trial, state.wishes[k], (t, h), np.inf, called)
+        return
+    _switch_relay(train, trial, t)
+    best = choose_notch(tables, train, trial, t)
+    trial.notch = best
+    run_step(tables, train, trial, state.wishes[k], (t, h), np.inf, called)
+    need_w = state.wishes[k].line_j / h
+    if need_w > 0.0 and not trial.relay_open:
+        speeds = mean_speeds(tables, train, mover, h)
+        _, most, _ = at_full(tables, tables.notches[train.first_notch + best], mover.voltage_v, speeds)
+        if need_w < most:
+            trial.notch = lowest_notch(tables, train, mover, best, need_w, speeds)
+    if trial.notch != mover.notch:
+        trial.notch_since_s = t
+
+
+@inlined
+def mean_speeds(tables, train, mover, h):
+    """Return what the mean speed of a step follows from: speed [m/s], half of step over inertia [s/kg], resistance [N]."""
+    v = mover.v_mps
+    constant, drag = additional_resistance(tables, train, mover, mover.s_m + 0.5 * v * h)
+    resistance = train.a_n + constant + (train.b_ns_per_m + (train.c_ns2_per_m2 + drag) * v) * v
+    return v, 0.5 * h / train.inertia_kg, resistance
+
+
+@inlined
+def _switch_relay(train, mover, t):
+    """Open or close the undervoltage relay by the last voltage; closing starts in the first grouping."""
+    u = mover.voltage_v
+    asks = u > train.relay_on_v if mover.relay_open else u < train.relay_off_v
+    if not asks:
+        mover.relay_since_s = np.inf
+        return
+    mover.relay_since_s = min(mover.relay_since_s, t)
+    if t - mover.relay_since_s >= train.relay_s:
+        mover.relay_open = not mover.relay_open
+        mover.relay_since_s = np.inf
+        mover.notch, mover.notch_since_s = 0, -np.inf
+
+
+@inlined
+def settle(tables, state, k, clock, u, row):
+    """Let train `k` do what the voltage `u` [V] permits of its wish over the step (start, length) [s], and fill `row`."""
+    t, h = clock
+    train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
+    wished, done = state.wishes[k], state.done[k]
+    need_w = wished.line_j / h
+    speeds = (0.0, 0.0, 0.0)
+    if train.drive > INVERTER and need_w > 0.0:
+        speeds = mean_speeds(tables, train, mover, h)
+    got_w, current, resistor_w, by = traction(tables, train, trial, need_w, u, speeds)
+    row.time_s, row.s_m, row.v_mps = t, mover.s_m, mover.v_mps
+    limited_by = wished.limited_by
+    if got_w < need_w * (1.0 - _SAME):
+        _retry(tables, state, k, clock, got_w)
+        limited_by = by
+    else:
+        state.done[k] = wished
+    v = mover.v_mps
+    state.movers[k] = trial
+    mover.voltage_v = u
+    write_row(train, done, row, h, u, (u * current, resistor_w))
+    row.wished_n = wished.wished_ns / h
+    row.acceleration_mps2 = (mover.v_mps - v) / h
+    row.phase = done.phase
+    if row.phase < 0:
+        row.phase = WAITING if mover.status == OUTSIDE else DWELLING
+    row.limited_by = limited_by
+
+
+@inlined
+def _retry(tables, state, k, clock, target_w):
+    """Run the step again with the mean power `target_w` [W] (of an inverter drive from the line, of others at the wheel).
+
+    A step in one phase meets it at once. In a step of several phases the power within a phase is sought by regula
+    falsi: the work grows with it.
+    """
+    train, trial, done = tables.trains[k], state.trials[k], state.done[k]
+    ratio = train.efficiency if train.drive == INVERTER else 1.0
+    low, low_w, high, high_w = 0.0, 0.0, np.inf, np.inf
+    cap = target_w
+    for _ in range(_MOST_TRIES):
+        _restart(tables, state, k)
+        run_step(tables, train, trial, done, clock, cap * ratio, (state.arrived_s, state.left_s))
+        got = done.line_j / clock[1]
+        if abs(got - target_w) <= _MATCH * target_w or target_w <= 0.0:
+            return
+        if got < target_w:
+            low, low_w = cap, got
+        else:
+            high, high_w = cap, got
+        if high == np.inf:
+            cap = min(cap * max(target_w / got, 1.5), 1e12) if got > 0.0 else 1e12
+        elif high - low <= _MATCH * high:
+            return
+        else:
+            cap = low + (high - low) * min(max((target_w - low_w) / (high_w - low_w), 0.05), 0.95)
+
+
+@inlined
+def _restart(tables, state, k):
+    """Put the trial of train `k` back to the start of the step; its notch and relay stay as they were chosen."""
+    train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
+    for n in range(mover.stop, min(trial.stop + 1, train.stops)):
+        state.left_s[train.first_stop + n] = np.nan
+        if n > mover.stop or mover.status != STANDING:
+            state.arrived_s[train.first_stop + n] = np.nan
+    notch, since, is_open, asked = trial.notch, trial.notch_since_s, trial.relay_open, trial.relay_since_s
+    state.trials[k] = mover
+    trial.notch, trial.notch_since_s, trial.relay_open, trial.relay_since_s = notch, since, is_open, asked

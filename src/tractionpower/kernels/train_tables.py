@@ -1,0 +1,241 @@
+"""Record types of the tables about trains, and the bundles in which they travel.
+
+All quantities are SI: m, s, m/s, kg, N, W, V, A. Places are metres along the route of a train, of its front, from the
+start of the route; all rows of one train lie together in a pool (`first_...` and a count).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+NO_DRIVE, INVERTER, SERIES_MOTORS, TABLE = 0, 1, 2, 3
+"""Kinds of drive."""
+
+LEAVE, STOP_THERE, STAY = 0, 1, 2
+"""What a train does at the end of its route."""
+
+TRAIN = np.dtype(
+    [
+        ("mass_kg", "f8"),
+        ("inertia_kg", "f8"),  # with rotating masses
+        ("spread_m", "f8"),  # length over which gradients and curves act; 0: under the front
+        ("a_n", "f8"),  # running resistance a + b v + c v2
+        ("b_ns_per_m", "f8"),
+        ("c_ns2_per_m2", "f8"),
+        ("adhesive_n", "f8"),  # weight on driven axles; infinite: no limit
+        ("adhesion_a_mps", "f8"),  # mu = a / (v + b) + c
+        ("adhesion_b_mps", "f8"),
+        ("adhesion_c", "f8"),
+        ("drive", "i8"),
+        ("start_n", "f8"),  # inverter: greatest effort; series motors, tables: greatest at any speed and voltage
+        ("power_w", "f8"),
+        ("pull_out_w_mps", "f8"),  # effort times v2 above the pull-out speed; infinite: none
+        ("efficiency", "f8"),
+        ("first_map", "i8"),  # into `points`: efficiency over speed, one curve per load
+        ("map_speeds", "i8"),
+        ("map_loads", "i8"),  # 0: constant efficiency
+        ("max_current_a", "f8"),
+        ("knee_v", "f8"),  # below it the current is reduced; 0: never
+        ("lowest_v", "f8"),  # U_min2: no traction at or below it where the current is reduced, reduced auxiliaries
+        ("nominal_v", "f8"),
+        ("first_power", "i8"),  # into `points`: power at the wheel over voltage
+        ("powers", "i8"),
+        ("first_curve", "i8"),  # into `curves`
+        ("curves", "i8"),
+        ("first_notch", "i8"),  # into `notches`
+        ("notches", "i8"),
+        ("notch_s", "f8"),  # least time on a notch
+        ("relay_off_v", "f8"),
+        ("relay_on_v", "f8"),
+        ("relay_s", "f8"),
+        ("brake_n", "f8"),  # electric brake
+        ("brake_w", "f8"),
+        ("brake_from_mps", "f8"),
+        ("brake_efficiency", "f8"),
+        ("regenerates", "?"),
+        ("fold_from_v", "f8"),
+        ("fold_to_v", "f8"),
+        ("rheostat_w", "f8"),
+        ("auxiliary_w", "f8"),  # constant power
+        ("heating_s", "f8"),  # resistive heating
+        ("first_knot", "i8"),
+        ("knots", "i8"),
+        ("first_piece", "i8"),
+        ("pieces", "i8"),
+        ("first_stop", "i8"),
+        ("stops", "i8"),
+        ("first_limit", "i8"),
+        ("limits", "i8"),
+        ("route_m", "f8"),
+        ("start_s", "f8"),
+        ("start_mps", "f8"),
+        ("end", "i8"),
+    ]
+)
+"""A train on its route; equal powered vehicles are one drive, efforts and currents added up."""
+
+KNOT = np.dtype([("at_m", "f8"), ("height_m", "f8"), ("added_m", "f8"), ("drag_kg", "f8")])
+"""Additional resistance, summed up from the start of the route: height, curves and tunnels as a height [N/N m], and what
+tunnels add to c [N s2/m2 m]. Straight between knots, level before the first and behind the last."""
+
+PIECE = np.dtype([("from_m", "f8"), ("w", "f8"), ("dw", "f8")])
+"""Speed ceiling: v2 = w + dw (s - from_m) from `from_m` to the next piece [m2/s2, m/s2]; at a stop it comes down to 0.
+The ceiling jumps upwards only. The last piece begins at the end of the route."""
+
+STOP = np.dtype([("at_m", "f8"), ("departure_s", "f8"), ("dwell_s", "f8"), ("stops", "?")])
+"""A call: the train stops there, or passes. Without a planned departure `departure_s` is -inf."""
+
+LINE_LIMIT = np.dtype([("from_m", "f8"), ("max_a", "f8"), ("standstill_a", "f8")])
+"""Largest train current from a place on; infinite where the line sets none."""
+
+POINT = np.dtype([("x", "f8"), ("y", "f8")])
+"""A point of a curve."""
+
+CURVE = np.dtype([("voltage_v", "f8"), ("first_effort", "i8"), ("efforts", "i8"), ("first_current", "i8"), ("currents", "i8")])
+"""Effort [N] and current [A] over speed [m/s] at one voltage, as points."""
+
+NOTCH = np.dtype(
+    [
+        ("series", "i8"),  # motors in a branch
+        ("branches", "i8"),  # of the whole train
+        ("set_a", "f8"),  # largest motor current: the starting resistors hold it
+        ("motor_ohm", "f8"),
+        ("full_field", "?"),  # starting resistors can be in
+        ("first_point", "i8"),  # into `motor`
+        ("points", "i8"),
+    ]
+)
+"""A grouping and field step of series motors."""
+
+MOTOR_POINT = np.dtype([("current_a", "f8"), ("emf_vs_per_m", "f8"), ("effort_n", "f8")])
+"""A motor current with the voltage induced in one motor per m/s, and the effort of the train at the wheel."""
+
+
+class TrainTables(NamedTuple):
+    """All trains of a scenario as record arrays; `points` is the pool of curves."""
+
+    trains: NDArray[np.void]
+    knots: NDArray[np.void]
+    pieces: NDArray[np.void]
+    stops: NDArray[np.void]
+    limits: NDArray[np.void]
+    curves: NDArray[np.void]
+    notches: NDArray[np.void]
+    motor: NDArray[np.void]
+    points: NDArray[np.void]
+
+
+OUTSIDE, RUNNING, STANDING, STAYING, GONE = 0, 1, 2, 3, 4
+"""Where a train is in its run: not yet on the line, under way, at a stop, at the end of its route for good, off the line."""
+
+ACCELERATING, CRUISING, COASTING, BRAKING, DWELLING, WAITING, HOLDING, UNPOWERED = range(8)
+"""Phases, as codes of `PHASES`."""
+
+PHASES = ("accelerating", "cruising", "coasting", "braking", "dwelling", "waiting", "holding", "unpowered")
+
+BY_NOTHING, BY_SPEED, BY_ADHESION, BY_DRIVE, BY_LINE_CURRENT, BY_TRAIN_CURRENT, BY_VOLTAGE = range(7)
+"""What limits the effort, as codes of `LIMITED_BY`."""
+
+LIMITED_BY = ("nothing", "speed", "adhesion", "drive", "line_current", "train_current", "voltage")
+
+MOVER = np.dtype(
+    [
+        ("status", "i8"),
+        ("s_m", "f8"),
+        ("v_mps", "f8"),
+        ("piece", "i8"),  # of the ceiling, where the front is; counted from the train's first
+        ("front", "i8"),  # knot before the front
+        ("tail", "i8"),  # knot before the tail
+        ("stop", "i8"),  # next call
+        ("leave_s", "f8"),  # when it may leave the stop it stands at
+        ("limit", "i8"),
+        ("notch", "i8"),
+        ("notch_since_s", "f8"),
+        ("relay_open", "?"),
+        ("relay_since_s", "f8"),  # since when the voltage asks for the other position; infinite: it does not
+        ("voltage_v", "f8"),  # of the step before
+        ("finished_s", "f8"),  # when it left the line or came to stay; NaN: not yet
+    ]
+)
+"""What one step leaves of a train for the next."""
+
+TALLY = np.dtype(
+    [
+        ("traction_ns", "f8"),  # integrals over the step: effort by time and by distance
+        ("traction_j", "f8"),
+        ("line_j", "f8"),  # traction divided by the efficiency of an inverter drive, else the same as traction_j
+        ("brake_ns", "f8"),
+        ("brake_j", "f8"),
+        ("electric_ns", "f8"),  # part of the brake that the electric brake can give
+        ("electric_j", "f8"),
+        ("resistance_ns", "f8"),
+        ("resistance_j", "f8"),
+        ("wished_ns", "f8"),
+        ("moved_m", "f8"),
+        ("moving_s", "f8"),
+        ("phase", "i8"),  # at the start of the step
+        ("limited_by", "i8"),  # without regard to the voltage, where the train accelerates
+        ("on_line_s", "f8"),  # time on the line within the step
+    ]
+)
+"""What a train does in one step."""
+
+TRAIN_ROW = np.dtype(
+    [
+        ("time_s", "f8"),
+        ("s_m", "f8"),
+        ("v_mps", "f8"),
+        ("acceleration_mps2", "f8"),
+        ("phase", "i8"),
+        ("limited_by", "i8"),
+        ("traction_n", "f8"),
+        ("electric_brake_n", "f8"),
+        ("friction_brake_n", "f8"),
+        ("resistance_n", "f8"),
+        ("wished_n", "f8"),
+        ("voltage_v", "f8"),
+        ("current_a", "f8"),
+        ("power_w", "f8"),
+        ("auxiliary_w", "f8"),
+        ("starting_resistor_w", "f8"),
+        ("braking_resistor_w", "f8"),
+        ("refused_w", "f8"),
+        ("drive_loss_w", "f8"),  # between line and wheel, starting resistors apart
+        ("wheel_w", "f8"),  # tractive power at the wheel
+        ("returned_w", "f8"),  # fed back into the line
+    ]
+)
+"""A step of a train: time, place, speed, phase at its start; means over the step of all else."""
+
+
+class TrainState(NamedTuple):
+    """What trains leave for the next step, what they try in this one, and when they called."""
+
+    movers: NDArray[np.void]
+    trials: NDArray[np.void]  # MOVER
+    wishes: NDArray[np.void]  # TALLY of the trial
+    done: NDArray[np.void]  # TALLY of the step
+    arrived_s: NDArray[np.float64]  # by row of `TrainTables.stops`; NaN: not yet
+    left_s: NDArray[np.float64]
+
+
+def new_train_state(tables: TrainTables) -> TrainState:
+    """Return the state in which all trains are outside."""
+    trains, stops = len(tables.trains), len(tables.stops)
+    movers = np.zeros(trains, MOVER)
+    movers["v_mps"] = tables.trains["start_mps"]
+    movers["relay_since_s"] = np.inf
+    movers["notch_since_s"] = -np.inf
+    movers["finished_s"] = np.nan
+    movers["voltage_v"] = tables.trains["nominal_v"]
+    return TrainState(
+        movers=movers,
+        trials=movers.copy(),
+        wishes=np.zeros(trains, TALLY),
+        done=np.zeros(trains, TALLY),
+        arrived_s=np.full(stops, np.nan),
+        left_s=np.full(stops, np.nan),
+    )

@@ -1,0 +1,1 @@
+"""Trains that move: traction, resistance, speed ceiling, theoretical journeys."""

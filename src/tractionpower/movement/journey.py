@@ -1,0 +1,147 @@
+"""Theoretical journeys (PT): trains alone at a given voltage, without the network, in both forms of the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.alignment.path import RoutePath
+from tractionpower.kernels.journey import ARRIVED, OUT_OF_ROWS, STUCK, run_journey
+from tractionpower.kernels.speed_form import run_over_speed
+from tractionpower.kernels.train_tables import POINT, TRAIN_ROW, TrainState, new_train_state
+from tractionpower.model.scenario import Scenario
+from tractionpower.model.timetable import TrainRun
+from tractionpower.movement.compile import Movement, PlannedRun, compile_trains
+
+Form = Literal["time", "speed"]
+Status = Literal["complete", "stuck", "unfinished"]
+Voltage = float | Sequence[tuple[float, float]]
+"""A voltage [V], or points (distance of the front from the start of the route [m], voltage [V])."""
+
+LONGEST_S = 48 * 3600.0
+"""A journey that takes longer is left unfinished."""
+
+_BLOCK = 4096
+_STATUS: dict[int, Status] = {ARRIVED: "complete", STUCK: "stuck", OUT_OF_ROWS: "unfinished"}
+
+
+@dataclass(frozen=True, slots=True)
+class JourneyCall:
+    """A call of a journey: planned and computed times after midnight [s]; NaN where the train has not come."""
+
+    station: str
+    kind: Literal["stop", "pass"]
+    planned_arrival_s: float | None
+    planned_departure_s: float | None
+    arrival_s: float
+    departure_s: float
+    at_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class Journey:
+    """A theoretical journey.
+
+    Attributes
+    ----------
+    run, path
+        The run and its route.
+    rows
+        Steps, records of `TRAIN_ROW` in SI.
+    calls
+        Its calls.
+    status
+        complete; stuck: it cannot go on; unfinished: it takes longer than two days.
+    start_s, finished_s
+        Start, and end of the last row with the train on the line [s after midnight].
+    length_m, step_s
+        Length of the train [m], step [s].
+    ceiling
+        Its speed ceiling, records of `PIECE`.
+    """
+
+    run: TrainRun
+    path: RoutePath
+    rows: NDArray[np.void]
+    calls: tuple[JourneyCall, ...]
+    status: Status
+    start_s: float
+    finished_s: float
+    length_m: float
+    step_s: float
+    ceiling: NDArray[np.void]
+
+
+def theoretical_journeys(
+    scenario: Scenario,
+    *,
+    voltage_v: Voltage | None = None,
+    step_s: float | None = None,
+    form: Form = "time",
+    runs: Sequence[str] | None = None,
+) -> list[Journey]:
+    """Return the theoretical journeys of the trains of a scenario, by identifier (Krzysztozek 2019, eq. 1 to 4).
+
+    Parameters
+    ----------
+    scenario
+        The scenario; its supply counts with its nominal voltage only.
+    voltage_v
+        Voltage at the pantograph; left out: the nominal one.
+    step_s
+        Time step [s]; left out: that of the clock.
+    form
+        ``time``: eq. 1 and 2 in time steps; ``speed``: eq. 3 and 4 integrated over the speed.
+    runs
+        Identifiers of the runs; left out: all.
+    """
+    movement = compile_trains(scenario, runs)
+    given = movement.voltages.u_n if voltage_v is None else voltage_v
+    points = [(0.0, given)] if isinstance(given, int | float) else list(given)
+    voltage = np.array(points, POINT)
+    step = scenario.clock.step_s if step_s is None else step_s
+    state = new_train_state(movement.tables)
+    return [_run(movement, state, k, voltage, step, form) for k in range(len(movement.runs))]
+
+
+def _run(movement: Movement, state: TrainState, k: int, voltage: NDArray[np.void], step: float, form: Form) -> Journey:
+    planned = movement.runs[k]
+    run = run_journey if form == "time" else run_over_speed
+    blocks, end, start = [], OUT_OF_ROWS, planned.start_s
+    while end == OUT_OF_ROWS and start - planned.start_s < LONGEST_S:
+        rows = np.zeros(_BLOCK, TRAIN_ROW)
+        count, end, start = run(movement.tables, state, k, (start, step), voltage, rows)
+        blocks.append(rows[:count])
+    train = movement.tables.trains[k]
+    pieces = movement.tables.pieces[train["first_piece"] : train["first_piece"] + train["pieces"]]
+    return Journey(
+        run=planned.run,
+        path=planned.path,
+        rows=np.concatenate(blocks),
+        calls=_calls(planned, state, int(train["first_stop"])),
+        status=_STATUS[end],
+        start_s=planned.start_s,
+        finished_s=float(state.movers[k]["finished_s"]) if end == ARRIVED else start,
+        length_m=planned.formation.length_m,
+        step_s=step,
+        ceiling=pieces,
+    )
+
+
+def _calls(planned: PlannedRun, state: TrainState, first: int) -> tuple[JourneyCall, ...]:
+    return tuple(
+        JourneyCall(
+            station=item.call.station,
+            kind="stop" if item.call.stops else "pass",
+            planned_arrival_s=item.call.arrival,
+            planned_departure_s=item.call.departure,
+            arrival_s=float(state.arrived_s[row]),
+            departure_s=float(state.left_s[row]),
+            at_m=item.at_m,
+        )
+        for row, item in enumerate(planned.calls, start=first)
+    )
