@@ -16,10 +16,28 @@ from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import StudyFile
 from tractionpower.model.supply import Supply
+from tractionpower.model.timetable import Timetable
+from tractionpower.model.vehicle import Train, Vehicle
 from tractionpower.results.columns import TABLES
 
 HERE = Path(__file__).parent
-FILES = {"study.yaml": StudyFile, "line.yaml": Line, "supply.yaml": Supply, "limits (CSV)": Limit}
+FILES = {
+    "study.yaml": StudyFile,
+    "line.yaml": Line,
+    "supply.yaml": Supply,
+    "timetable.yaml": Timetable,
+    "rollingstock/trains/ID.yaml": Train,
+    "rollingstock/vehicles/ID.yaml": Vehicle,
+    "limits (CSV)": Limit,
+}
+INPUTS = """Units stand in the names. A list may be the name of a CSV file instead, relative to the file that names it; its
+header row names the keys, those of a nested mapping with dots (`start.time`). A column that is a list of rows itself, such as
+`calls`, holds names of further CSV files.
+
+Trains and vehicles are looked for by their id in `rollingstock` of the study's folder, then of the working folder, then among
+what ships. A character of an id that a file name cannot hold is written as `%` and two hexadecimal digits (`a%2Fb.yaml` for
+a/b).
+"""
 NOTE = "<!-- made by `make docs` from the declarations; do not edit -->\n"
 SIGNS = """Parquet files in the folder of the run. Currents and powers are positive when taken from the line, and when a
 substation feeds. A row describes the step that begins at `time_s`; the sum of `power_kw` times the step is the energy.
@@ -29,7 +47,7 @@ With `output.every_s` only the steps at that interval have rows; key figures use
 
 def inputs_page() -> str:
     """Return the page of all input keys."""
-    parts = [NOTE, "# Input files\n", "Units stand in the names. A list may be the name of a CSV file instead.\n"]
+    parts = [NOTE, "# Input files\n", INPUTS]
     for title, model in FILES.items():
         parts.append(f"## {title}\n")
         parts.append(_table(model))
@@ -66,12 +84,16 @@ def _allowed(info: FieldInfo) -> str:
             if getattr(item, attribute, None) is not None:
                 bounds.append(f"{sign} {getattr(item, attribute):g}")
     literals = [kind for kind in _kinds(info.annotation) if get_origin(kind) is typing.Literal]
+    if bool in _kinds(info.annotation):
+        return "true, false"
     return ", ".join(bounds) or ", ".join(str(choice) for kind in literals for choice in get_args(kind))
 
 
 def _default(info: FieldInfo) -> str:
     if info.default is PydanticUndefined:
         return "required" if info.default_factory is None else ""
+    if isinstance(info.default, bool):
+        return str(info.default).lower()
     if info.default is None or info.default == () or isinstance(info.default, BaseModel):
         return ""
     return str(info.default)
@@ -89,8 +111,15 @@ def _parts(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, type
         for kind in _kinds(info.annotation):
             if isinstance(kind, type) and issubclass(kind, BaseModel):
                 path = f"{prefix}{info.alias or name}"
-                yield path, kind
+                yield path + _which(kind), kind
                 yield from _parts(kind, path + ".")
+
+
+def _which(model: type[BaseModel]) -> str:
+    # One of several declarations is told by its only kind.
+    kind = model.model_fields.get("kind")
+    choices = get_args(kind.annotation) if kind is not None else ()
+    return f" (kind: {choices[0]})" if len(choices) == 1 else ""
 
 
 def main() -> None:

@@ -7,6 +7,7 @@ from tractionpower.io.csv_files import csv_text, read_csv
 from tractionpower.io.shapes import shape_of
 from tractionpower.io.text_files import Source
 from tractionpower.model.line import Connection, Gradient, Station
+from tractionpower.model.timetable import Call, TrainRun
 
 HEADER = "from_km,to_km,permille,tracks\n"
 
@@ -50,6 +51,16 @@ def test_lines_count_blank_and_quoted_lines(tmp_path):
 def test_dotted_headers_make_nested_rows(tmp_path):
     table = read_csv(source(tmp_path, "from.track,from.km,to.track,to.km\n1,2,3,4\n"), shape_of(Connection))
     assert table.rows == [{"from": {"track": "1", "km": 2.0}, "to": {"track": "3", "km": 4.0}}]
+
+
+def test_true_and_false(tmp_path):
+    table = read_csv(source(tmp_path, "station,stops\nA,true\nB,FALSE\nC,no\n"), shape_of(Call))
+    assert [row["stops"] for row in table.rows] == [True, False, "no"]
+
+
+def test_a_list_of_rows_in_a_cell_is_the_name_of_a_file(tmp_path):
+    table = read_csv(source(tmp_path, "id,route,calls\n1,r.csv,c.csv\n"), shape_of(TrainRun))
+    assert table.rows == [{"id": "1", "route": "r.csv", "calls": "c.csv"}]
 
 
 def test_identifiers_stay_text_and_no_formula_is_read(tmp_path):

@@ -54,6 +54,8 @@ def test_paths_are_split_and_made_alike():
     path = path_of("line", ("rows", 0, "km"), data)
     assert path == "line.rows[x.y].km"
     assert split_path(path) == ["line", "rows", "x.y", "km"]
+    twice = {"vehicles": [{"id": "ep09"}, {"id": "coach"}, {"id": "ep09"}]}
+    assert [path_of("", ("vehicles", k), twice) for k in range(3)] == ["vehicles[0]", "vehicles[coach]", "vehicles[2]"]
     assert path_of("line", ("rows", 1), data) == "line.rows[1]"
     assert path_of("", ("free", "1 increasing"), data) == "free[1 increasing]"
     assert list_mark(Mark("a"), data["rows"]).ids == {"x.y": 0}

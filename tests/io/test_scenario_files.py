@@ -9,6 +9,7 @@ from tractionpower.errors import InputError, OutputError
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.io.scenario_files import load_scenario, read_scenario, save_scenario
 from tractionpower.io.templates import template_texts
+from tractionpower.model.vehicle import Part
 
 
 def test_a_sound_study_is_loaded(write_study):
@@ -91,11 +92,26 @@ def test_a_timetable_without_trains_is_read(problems_of_study):
     assert problems_of_study(study_yaml=STUDY, t_yaml="format: 1\ntrains: []\n") == []
 
 
-@pytest.mark.parametrize("trains", ["[{id: 1, train: en57}]", "trains.csv"])
-def test_trains_are_one_clear_problem(only_problem, trains):
-    problem = only_problem(study_yaml=STUDY, t_yaml=f"format: 1\ntrains: {trains}\n")
-    assert (problem.code, problem.path, problem.place) == ("no_trains_yet", "timetable.trains", "t.yaml:2")
-    assert "networks only" in problem.remedy
+def test_saving_writes_trains_and_vehicles_under_names_that_every_system_keeps(write_study, with_trains, tmp_path):
+    loaded = load_scenario(write_study(with_trains)).scenario
+    vehicle = loaded.vehicles[0]
+    vehicles = tuple(vehicle.model_copy(update={"id": name}) for name in ("A/B", "a/b", "con"))
+    train = loaded.trains[0].model_copy(update={"vehicles": tuple(Part(id=each.id) for each in vehicles)})
+    scenario = loaded.model_copy(update={"trains": (train,), "vehicles": vehicles})
+    save_scenario(scenario, tmp_path / "saved")
+    names = sorted(file.name for file in (tmp_path / "saved/rollingstock/vehicles").iterdir())
+    assert names == ["%41%2F%42.yaml", "%63on.yaml", "a%2Fb.yaml"]
+    assert load_scenario(tmp_path / "saved").scenario == scenario
+
+
+def test_rolling_stock_of_another_study_is_not_touched(write_study, with_trains, tmp_path):
+    scenario = load_scenario(write_study(with_trains)).scenario
+    save_scenario(scenario, tmp_path / "saved")
+    other = tmp_path / "saved/rollingstock/vehicles/other.yaml"
+    other.write_text("kept")
+    save_scenario(scenario, tmp_path / "saved")
+    assert other.read_text() == "kept"
+    assert load_scenario(tmp_path / "saved").scenario == scenario
 
 
 LIMITS = "format: 1\nlimits: l.csv\nclock: {start: 00:00, end: 01:00}\n"
@@ -160,9 +176,9 @@ SNIPPETS = [
 ]
 
 
-@settings(derandomize=True, deadline=None, max_examples=60)
+@settings(derandomize=True, deadline=None, max_examples=100)
 @given(
-    st.sampled_from(["study.yaml", "line.yaml", "supply.yaml"]),
+    st.sampled_from(sorted(set(template_texts()) - {"README.md"})),
     st.integers(0, 10_000),
     st.lists(st.sampled_from(SNIPPETS), max_size=4),
 )
@@ -172,6 +188,7 @@ def test_damaged_files_give_problems_with_a_place_and_never_crash(name, at, snip
     texts[name] = texts[name][:at] + "".join(snippets) + texts[name][at + 5 :]
     with tempfile.TemporaryDirectory() as folder:
         for file, text in texts.items():
+            (Path(folder) / file).parent.mkdir(parents=True, exist_ok=True)
             (Path(folder) / file).write_text(text, encoding="utf-8")
         loaded, problems = read_scenario(folder)
     assert (loaded is None) == bool(problems)

@@ -24,6 +24,19 @@ def test_a_list_of_rows_may_be_a_csv_file():
     assert kinds == ["array", "string"]
 
 
+def test_lists_within_rows_may_be_csv_files_as_well():
+    kinds = [node.get("type") for node in schema("timetable")["$defs"]["TrainRun"]["properties"]["calls"]["anyOf"]]
+    assert kinds == ["array", "string"]
+    kinds = [node.get("type") for node in schema("vehicle")["$defs"]["TableDrive"]["properties"]["effort"]["anyOf"]]
+    assert kinds == ["array", "string"]
+
+
+def test_the_kinds_of_drive_are_told_apart():
+    union = schema("vehicle")["properties"]["drive"]["anyOf"][0]
+    assert union["discriminator"]["propertyName"] == "kind"
+    assert len(union["oneOf"]) == 3
+
+
 def test_an_unknown_schema_names_the_nearest():
     with pytest.raises(UsageError, match="did you mean supply"):
         schema("suply")

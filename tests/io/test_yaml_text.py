@@ -21,6 +21,29 @@ def test_written_values_are_read_again(tmp_path, value):
     assert read.problems == []
 
 
+def test_rows_that_hold_rows_are_written_key_by_key():
+    rows = [{"id": "7", "calls": [{"station": "A"}, {"station": "B"}]}, {"id": "8", "calls": []}]
+    assert document({"trains": rows}) == (
+        'trains:\n  - id: "7"\n    calls:\n      - {station: A}\n      - {station: B}\n  - {id: "8", calls: []}\n'
+    )
+    assert document({"drive": {"kind": "table", "effort": [{"v": 1}]}, "brake": {"rate": 0.5}}) == (
+        "drive:\n  kind: table\n  effort:\n    - {v: 1}\nbrake: {rate: 0.5}\n"
+    )
+
+
+def test_a_mapping_that_is_too_long_for_a_line():
+    text = document({"drive": {f"key_{number}": 1.25 for number in range(20)}})
+    assert text.count("\n") == 21
+    assert text.startswith("drive:\n  key_0: 1.25\n")
+
+
+@pytest.mark.parametrize("depth", [{"rows": [{"rows": [{"no": 1, "a: b": []}, {}]}, {}, 5]}, {"long": {"x" * 200: {"y": [{}]}}}])
+def test_what_is_nested_is_read_again(tmp_path, depth):
+    file = tmp_path / "a.yaml"
+    file.write_text(document({"key": depth, "list": [depth, depth]}), encoding="utf-8")
+    assert read_yaml(Source(file, "a.yaml", "")).data == {"key": depth, "list": [depth, depth]}
+
+
 @pytest.mark.parametrize("key", ["a b", "1 increasing", "no", "a: b"])
 def test_written_keys_are_read_again(tmp_path, key):
     file = tmp_path / "a.yaml"

@@ -7,10 +7,25 @@ from hypothesis import strategies as st
 
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.io.scenario_files import load_scenario, save_scenario
+from tractionpower.model.drive import (
+    CurrentPoint,
+    EfficiencyPoint,
+    EffortPoint,
+    Grouping,
+    InverterDrive,
+    MagnetisationPoint,
+    PowerOverVoltage,
+    Relay,
+    SeriesMotorDrive,
+    StartingResistors,
+    TableDrive,
+)
 from tractionpower.model.limits import Limit, overlay
 from tractionpower.model.line import Connection, Curve, Gradient, Line, SpeedLimit, Station, Track, TrackPoint
 from tractionpower.model.scenario import Clock, Output, Scenario
 from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, SectionPoint, Substation, Supply
+from tractionpower.model.timetable import Call, Leg, Start, Timetable, TrainRun
+from tractionpower.model.vehicle import Adhesion, Auxiliaries, Brake, Part, Resistance, Train, Vehicle
 
 
 def reals(low: float = -1e6, high: float = 1e6, **options) -> st.SearchStrategy[float]:
@@ -134,6 +149,185 @@ LIMITS = listed(
     )
 ).map(lambda rows: overlay(shipped_limits(), rows))
 
+# --- trains: any text may be an identifier, so capitals, slashes, dots and names of devices are drawn often
+
+STOCK_NAMES = NAMES | st.sampled_from(
+    ["EP09", "ep09", "a/b", "A/B", "..", "con", "CON", "x.yaml", "50%", "%41", "\u00f3", "o\u0301", "L" * 300]
+)
+SHARES = reals(0.0, 1.0, exclude_min=True)
+
+
+def least_two(strategy: st.SearchStrategy) -> st.SearchStrategy[tuple]:
+    return st.lists(strategy, min_size=2, max_size=3).map(tuple)
+
+
+def rising(high: float) -> st.SearchStrategy[list[float]]:
+    return st.lists(positive(high), min_size=2, max_size=4, unique=True).map(sorted)
+
+
+def maybe_dropped(strategy: st.SearchStrategy) -> st.SearchStrategy:
+    return st.none() | strategy
+
+
+FOLDS = {"fold_back_from_v": maybe_dropped(positive(5000)), "fold_back_to_v": maybe_dropped(positive(5000))}
+LIMITED = {"max_current_a": maybe_dropped(positive(5000)), "knee_factor": maybe_dropped(SHARES)}
+
+INVERTERS = st.builds(
+    lambda constant, table, over, **more: InverterDrive(
+        kind="inverter",
+        efficiency=None if table else constant,
+        efficiency_map=table,
+        power_over_voltage=tuple(PowerOverVoltage(voltage_v=v, power_kw=v) for v in over),
+        **more,
+    ),
+    SHARES,
+    listed(st.builds(EfficiencyPoint, speed_kmh=reals(0, 300), load_percent=reals(0, 100), efficiency=SHARES)),
+    st.just([]) | rising(4000),
+    starting_effort_kn=positive(1000),
+    power_kw=positive(9000),
+    pull_out_kmh=maybe_dropped(positive(300)),
+    **LIMITED,
+    **FOLDS,
+)
+
+SERIES_MOTORS = st.builds(
+    lambda currents, fields, **more: SeriesMotorDrive(
+        kind="series_motors",
+        magnetisation=tuple(MagnetisationPoint(current_a=current, emf_vs_per_rev=current) for current in currents),
+        field_steps_percent=tuple(reversed(fields)),
+        **more,
+    ),
+    rising(2000),
+    rising(100),
+    motors=st.integers(1, 12),
+    groupings=st.lists(
+        st.builds(
+            Grouping, series=st.integers(1, 8), parallel=st.integers(1, 8), starting_current_a=maybe_dropped(positive(900))
+        ),
+        min_size=1,
+        max_size=3,
+    ).map(tuple),
+    starting_current_a=positive(900),
+    motor_resistance_ohm=reals(0, 1),
+    gear_ratio=positive(9),
+    wheel_diameter_m=positive(2),
+    gear_efficiency=SHARES,
+    starting_resistors_ohm=maybe_dropped(
+        st.builds(
+            StartingResistors, series=listed(reals(0, 9)), series_parallel=listed(reals(0, 9)), parallel=listed(reals(0, 9))
+        )
+    ),
+    relay=maybe_dropped(
+        st.builds(lambda pair, delay: Relay(off_v=pair[0], on_v=pair[1], delay_s=delay), rising(4000), reals(0, 9))
+    ),
+    notch_time_s=reals(0, 9),
+    **LIMITED,
+)
+
+POINTS = {"speed_kmh": reals(0, 300), "voltage_v": maybe_dropped(positive(5000))}
+TABLES = st.builds(
+    TableDrive,
+    kind=st.just("table"),
+    effort=least_two(st.builds(EffortPoint, effort_kn=reals(0, 900), **POINTS)),
+    current=least_two(st.builds(CurrentPoint, current_a=reals(0, 5000), **POINTS)),
+    **LIMITED,
+    **FOLDS,
+)
+
+VEHICLES = st.builds(
+    lambda mass, share, **more: Vehicle(
+        mass_t=mass, adhesive_mass_t=None if share is None else max(mass * share, 5e-324), **more
+    ),
+    reals(1, 500),
+    maybe_dropped(SHARES),
+    id=STOCK_NAMES,
+    name=TEXTS,
+    source=TEXTS,
+    kind=st.sampled_from(["locomotive", "multiple_unit", "coach", "wagon"]),
+    load_t=reals(0, 100),
+    length_m=positive(500),
+    max_speed_kmh=positive(600),
+    axles=maybe_dropped(st.integers(1, 40)),
+    rotating_mass_factor=reals(1, 2),
+    resistance=st.builds(
+        Resistance,
+        a_n=reals(0, 9e3),
+        specific_c_n_per_kn_per_kmh2=reals(0, 1),
+        tunnel_factor_single_track=maybe_dropped(reals(1, 9)),
+    ),
+    adhesion=st.builds(Adhesion, c=reals(0, 1)),
+    drive=st.none() | INVERTERS | SERIES_MOTORS | TABLES,
+    brake=st.builds(
+        Brake, regenerates=st.none() | st.booleans(), service_rate_mps2=positive(5), efficiency=maybe_dropped(SHARES)
+    ),
+    auxiliaries=st.builds(Auxiliaries, power_kw=reals(0, 900), heating=st.sampled_from(["resistive", "constant_power"])),
+)
+
+CALLS = st.builds(
+    Call,
+    station=NAMES,
+    arrival=maybe_dropped(TIMES),
+    departure=maybe_dropped(TIMES),
+    min_dwell_s=reals(0, 900),
+    stops=st.booleans(),
+)
+LEGS = st.builds(
+    lambda track, pair: Leg(track=track, from_km=pair[0], to_km=pair[1]),
+    NAMES,
+    st.tuples(reals(), reals()).filter(lambda pair: pair[0] != pair[1]),
+)
+
+
+@st.composite
+def rolling_stock(draw: st.DrawFn) -> dict[str, object]:
+    """Draw runs, and just the trains and vehicles that they use."""
+    vehicles = {vehicle.id: vehicle for vehicle in draw(st.lists(VEHICLES, min_size=1, max_size=3))}
+    parts = st.lists(
+        st.builds(
+            Part,
+            id=st.sampled_from(sorted(vehicles)),
+            count=st.integers(1, 40),
+            load_percent=reals(0, 200),
+            powered=st.booleans(),
+        ),
+        min_size=1,
+        max_size=3,
+    ).map(tuple)
+    kinds = st.builds(
+        Train,
+        id=STOCK_NAMES,
+        name=TEXTS,
+        source=TEXTS,
+        category=st.none() | TEXTS,
+        vehicles=parts,
+        max_speed_kmh=maybe_dropped(positive(600)),
+        service_rate_mps2=maybe_dropped(positive(5)),
+        mass_distribution=st.sampled_from(["uniform", "point"]),
+    )
+    trains = {train.id: train for train in draw(st.lists(kinds, max_size=3))}
+    what = st.fixed_dictionaries({"vehicles": parts})
+    if trains:
+        what |= st.fixed_dictionaries({"train": st.sampled_from(sorted(trains))})
+    runs = st.builds(
+        lambda which, **more: TrainRun(**which, **more),
+        what,
+        id=NAMES,
+        category=st.none() | TEXTS,
+        route=st.lists(LEGS, min_size=1, max_size=3).map(tuple),
+        start=st.builds(Start, time=TIMES, speed_kmh=reals(0, 300)),
+        end=st.sampled_from([None, "leave", "stop", "stay"]),
+        calls=listed(CALLS),
+    )
+    timetable = Timetable(trains=draw(listed(runs)))
+    used = [trains[run.train] for run in timetable.trains if run.train is not None]
+    of_vehicles = {part.id for owner in (*used, *timetable.trains) for part in owner.vehicles}
+    return {
+        "timetable": timetable,
+        "trains": tuple(trains[name] for name in sorted({train.id for train in used})),
+        "vehicles": tuple(vehicles[name] for name in sorted(of_vehicles)),
+    }
+
+
 CLOCKS = st.builds(
     lambda pair, step, warm: Clock(start=pair[0], end=pair[1], step_s=step, warm_up=(pair[1] - pair[0]) / 2 if warm else None),
     st.tuples(TIMES, TIMES).filter(lambda pair: abs(pair[0] - pair[1]) > 1e-3).map(sorted),
@@ -142,7 +336,8 @@ CLOCKS = st.builds(
 )
 
 SCENARIOS = st.builds(
-    Scenario,
+    lambda stock, **more: Scenario(**stock, **more),
+    rolling_stock(),
     name=TEXTS,
     line=LINES,
     supply=SUPPLIES,

@@ -109,7 +109,7 @@ def test_later_changes_win_and_none_is_no_change(scenario):
     [
         ("supply.substation[A].km=1", "supply has no 'substation'", "substations", "'substations'"),
         ("supply.substations[a].km=1", "supply.substations has no 'a'", "A, B", "'A'"),
-        ("supply.substations[0].km=1", "supply.substations has no '0'", "A, B", ""),
+        ("supply.substations[2].km=1", "supply.substations has no '2'", "A, B", ""),
         ("supply.substations[A].internal_resistance=1", "no 'internal_resistance'", "id, km, ", "'internal_resistance_ohm'"),
         ("suply.system=x", "the scenario has no 'suply'", "supply", "'supply'"),
         ("supply.contact_lines[1].from_km=1", "supply.contact_lines has no '1'", "0", ""),
@@ -168,6 +168,87 @@ def test_all_wrong_paths_are_told_at_once(scenario):
 def test_two_items_of_one_id_are_ambiguous(scenario):
     both = apply_change(scenario, "supply.loads[x].id=train")
     assert refused(both, "supply.loads[train].km=3").code == "ambiguous_path"
+
+
+# --- trains
+
+RUN = {
+    "route": [{"track": "1", "from_km": 0.0, "to_km": 20.0}],
+    "calls": [{"station": "A", "departure": "00:05:00"}, {"station": "B", "arrival": "00:20:00"}],
+}
+CURVE = [{"current_a": 100.0, "emf_vs_per_rev": 10.0}, {"current_a": 200.0, "emf_vs_per_rev": 20.0}]
+
+
+@pytest.fixture
+def with_trains(scenario):
+    vehicle = {"mass_t": 84.0, "length_m": 19.0, "max_speed_kmh": 160.0, "rotating_mass_factor": 1.2, "resistance": {}}
+    series = {
+        "kind": "series_motors", "motors": 4, "groupings": [{"series": 4, "parallel": 1}], "starting_current_a": 400.0,
+        "motor_resistance_ohm": 0.1, "magnetisation": CURVE, "gear_ratio": 2.0, "wheel_diameter_m": 1.25, "gear_efficiency": 0.97,
+    }  # fmt: skip
+    inverter = {"kind": "inverter", "starting_effort_kn": 300.0, "power_kw": 5000.0, "efficiency": 0.87}
+    trains = [
+        {"id": "x", "vehicles": [{"id": "ep09"}, {"id": "coach", "count": 10}, {"id": "ep09"}]},
+        {"id": "y", "vehicles": [{"id": "unit"}]},
+    ]
+    more = {
+        "timetable": {"trains": [{"id": "7", "train": "x", **RUN}, {"id": "1", "train": "y", **RUN}]},
+        "trains": trains,
+        "vehicles": [
+            {"id": "coach", "kind": "coach", **vehicle},
+            {"id": "ep09", "kind": "locomotive", **vehicle, "drive": series},
+            {"id": "unit", "kind": "multiple_unit", **vehicle, "drive": inverter},
+        ],
+    }
+    return type(scenario).model_validate(scenario.model_dump(by_alias=True) | more)
+
+
+@pytest.mark.parametrize(
+    ("change", "read", "value"),
+    [
+        ("vehicles[ep09].mass_t=85", lambda s: s.vehicles[1].mass_t, 85.0),
+        ("vehicles[ep09].drive.magnetisation[1].current_a=250", lambda s: s.vehicles[1].drive.magnetisation[1].current_a, 250.0),
+        ("vehicles[unit].drive.power_kw=6000", lambda s: s.vehicles[2].drive.power_kw, 6000.0),
+        ("vehicles[coach].drive=null", lambda s: s.vehicles[0].drive, None),
+        ("timetable.trains[7].calls[0].departure=00:06:00", lambda s: s.timetable.trains[0].calls[0].departure, 360.0),
+        ("timetable.trains[1].train=x", lambda s: s.timetable.trains[1].train, "x"),
+        ("trains[x].vehicles[0].count=12", lambda s: [part.count for part in s.trains[0].vehicles], [12, 10, 1]),
+        ("trains[x].vehicles[2].powered=false", lambda s: [part.powered for part in s.trains[0].vehicles], [True, True, False]),
+        ("trains[x].vehicles[coach].count=12", lambda s: [part.count for part in s.trains[0].vehicles], [1, 12, 1]),
+        ("trains[y].vehicles[0].load_percent=60", lambda s: s.trains[1].vehicles[0].load_percent, 60.0),
+    ],
+)  # fmt: skip
+def test_changes_of_trains(with_trains, change, read, value):
+    changed = apply_change(with_trains, change)
+    assert read(changed) == value
+    assert changed.input_hash != with_trains.input_hash or read(with_trains) == value
+
+
+@pytest.mark.parametrize(
+    ("change", "code", "path", "told"),
+    [
+        ("vehicles[ep09].mass_t=-85", "bad_value", "vehicles[ep09].mass_t", "greater than 0"),
+        ("vehicles[ep09].drive.magnetisation[1].current_a=50", "bad_value", "vehicles[ep09].drive", "does not rise"),
+        ("vehicles[ep09].drive.gear_ratio=-1", "bad_value", "vehicles[ep09].drive.gear_ratio", "greater than 0"),
+        ("vehicles[unit].drive.kind=steam", "bad_value", "vehicles[unit].drive", "does not match any of the expected tags"),
+        ("vehicles[unit].drive.gear_ratio=2", "unknown_path", "vehicles[unit].drive.gear_ratio", "has no 'gear_ratio'"),
+        ("vehicles[ep9].mass_t=85", "unknown_path", "vehicles[ep9].mass_t", "has no 'ep9'"),
+        ("trains[x].vehicles[ep09].count=2", "ambiguous_path", "trains[x].vehicles[ep09].count", "2 items"),
+        ("trains[x].vehicles[3].count=2", "unknown_path", "trains[x].vehicles[3].count", "has no '3'"),
+        ("trains[x].vehicles[0].count=0", "bad_value", "trains[x].vehicles[0].count", "greater than or equal to 1"),
+        ("timetable.trains[0].train=y", "unknown_path", "timetable.trains[0].train", "has no '0'"),  # ids are numbers here
+        ("timetable.trains[7].train=null", "bad_value", "timetable.trains[7]", "either train or vehicles"),
+    ],
+)
+def test_changes_of_trains_that_are_refused(with_trains, change, code, path, told):
+    problem = refused(with_trains, change)
+    assert (problem.code, problem.path) == (code, path)
+    assert told in problem.found
+
+
+def test_present_values_of_trains_change_nothing(with_trains):
+    for path, value in dict(leaves(with_trains)).items():
+        assert apply_change(with_trains, f"{path}={json.dumps(value)}") == with_trains, path
 
 
 @pytest.mark.parametrize(

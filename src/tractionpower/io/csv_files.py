@@ -2,7 +2,8 @@
 
 Blanks around a cell are dropped and an empty cell is a key left out. A cell becomes a number if its field is declared
 as one and the text is a number; otherwise it stays text, and the check of the declaration tells what is wrong with it.
-Fields of a nested declaration have dotted headers, such as ``from.track``.
+Fields of a nested declaration have dotted headers, such as ``from.track``; a field that is a list of rows itself, such
+as the calls of a train, is the name of a further CSV file.
 """
 
 from __future__ import annotations
@@ -104,7 +105,7 @@ def _check_header(source: Source, line: int, header: Sequence[str], row: Shape) 
 
 def _is_known(name: str, row: Shape) -> bool:
     shape = row.find(tuple(name.split(".")))
-    return shape is not None and shape.kind not in ("mapping", "rows")
+    return shape is not None and shape.kind != "mapping"
 
 
 def _kind(name: str, row: Shape) -> str:
@@ -130,4 +131,6 @@ def _value(cell: str, kind: str, separator: str) -> Any:
     if kind in ("number", "integer"):
         text = cell.replace(",", ".") if separator == ";" else cell
         return float(text) if _NUMBER.fullmatch(text) else cell
+    if kind == "boolean" and cell.lower() in ("true", "false"):
+        return cell.lower() == "true"
     return cell

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -18,13 +18,28 @@ from tractionpower.model.base import FORMAT
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """A file's content with what is needed to talk about it: model path, values, lines, declared shape and file."""
+    """A file's content with what is needed to talk about it.
+
+    Attributes
+    ----------
+    root
+        Model path of the content.
+    data, mark
+        Values and their lines.
+    shape
+        What is declared.
+    file
+        The file itself.
+    silent
+        Places that already have a problem; further errors there say nothing new.
+    """
 
     root: str
     data: Any
     mark: Mark
     shape: Shape
     file: Path
+    silent: set[Loc] = field(default_factory=set)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,28 +70,33 @@ Told = tuple[str, str, str, str]
 """Code, found, allowed, remedy."""
 
 
-def problems_of(error: ValidationError, content: Input, silent: Collection[Loc] = ()) -> list[Problem]:
-    """Return the errors of one validation as problems, in the order of the file.
-
-    Parameters
-    ----------
-    error
-        What the declaration raised for the data of `content`.
-    content
-        The data and where they came from.
-    silent
-        Places that already have a problem; further errors there say nothing new.
-    """
+def problems_of(error: ValidationError, content: Input) -> list[Problem]:
+    """Return what the declaration raised for the data of `content` as problems, in the order of the file."""
     faults = [_fault(entry, content.shape) for entry in error.errors(include_url=False)]
     misspelt = {(*fault.loc[:-1], fault.meant) for fault in faults if fault.code == "extra_forbidden"}
-    told = [fault for fault in faults if fault.loc not in silent and not (fault.code == "missing" and fault.loc in misspelt)]
-    return [_problem(fault, content) for fault in told]
+    deeper = {fault.loc[:depth] for fault in faults for depth in range(len(fault.loc))}
+    around = {loc[:depth] for loc in content.silent for depth in range(len(loc))}
+
+    def is_news(fault: _Fault) -> bool:
+        if fault.loc in content.silent or (fault.code == "missing" and fault.loc in misspelt):
+            return False
+        if fault.code == "too_short" and fault.loc in deeper:  # the rows are there, but wrong
+            return False
+        # A rule over several keys cannot be judged while one of them failed to be read.
+        return fault.code in _TELLERS or fault.loc not in around
+
+    return [_problem(fault, content) for fault in faults if is_news(fault)]
 
 
 def _fault(entry: Any, shape: Shape) -> _Fault:
-    loc = tuple(token for token in entry["loc"] if token != "[key]")
-    parent = shape.find(loc[:-1]) if loc else None
-    return _Fault(entry["type"], loc, entry["input"], entry["msg"], shape.find(loc), parent)
+    tagged: Loc = tuple(token for token in entry["loc"] if token != "[key]")
+    code, value = entry["type"], entry["input"]
+    if code in _TAG_ERRORS:  # told at the key that is wrong or missing, not at the mapping around it
+        key = str(entry["ctx"]["discriminator"]).strip("'")
+        tagged, code = (*tagged, key), _TAG_ERRORS[code]
+        value = value.get(key) if isinstance(value, dict) else value
+    parent = shape.find(tagged[:-1]) if tagged else None
+    return _Fault(code, shape.untagged(tagged), value, entry["msg"], shape.find(tagged), parent)
 
 
 def in_file_order(problems: Iterable[Problem]) -> list[Problem]:
@@ -117,7 +137,8 @@ def _problem(fault: _Fault, content: Input) -> Problem:
 
 
 def _row_depth(loc: Loc) -> int:
-    return next(index for index, token in enumerate(loc) if isinstance(token, int)) + 1
+    # A row may name a table of its own; the last number is that of the row with the cell.
+    return max(index for index, token in enumerate(loc) if isinstance(token, int)) + 1
 
 
 def _tell_unknown(fault: _Fault) -> Told:
@@ -139,6 +160,8 @@ def _tell_type(fault: _Fault) -> Told:
         remedy = "put it in quotes"
     elif kind in ("number", "integer") and isinstance(fault.value, str) and "," in fault.value:
         remedy = "write the decimals with a point"
+    elif kind == "boolean" and str(fault.value).lower() in ("yes", "no", "y", "n", "on", "off", "0", "1"):
+        remedy = "write true or false: in YAML 1.2 yes and no are texts"
     return "wrong_type", shown(fault.value), fault.allowed, remedy
 
 
@@ -169,7 +192,9 @@ def _tell_identifier(fault: _Fault) -> Told:
 
 
 def _tell_short(fault: _Fault) -> Told:
-    return "empty_list", shown(fault.value), "a list with at least one row", ""
+    least = int(fault.shape.schema.get("minItems", 1)) if fault.shape is not None else 1
+    rows = "one row" if least == 1 else f"{least} rows"
+    return "too_short" if fault.value else "empty_list", shown(fault.value), f"a list with at least {rows}", ""
 
 
 def _tell_long(fault: _Fault) -> Told:
@@ -181,6 +206,7 @@ def _tell_custom(fault: _Fault) -> Told:
     return fault.code, shorten(fault.message, 200), "", ""
 
 
+_TAG_ERRORS = {"union_tag_invalid": "literal_error", "union_tag_not_found": "missing"}
 _TYPE_ERRORS = (
     "float_type", "float_parsing", "int_type", "int_from_float", "int_parsing", "int_parsing_size", "bool_type",
     "string_type", "string_unicode", "tuple_type", "list_type", "dict_type", "model_type", "model_attributes_type",

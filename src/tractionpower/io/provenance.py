@@ -2,8 +2,9 @@
 
 Grammar of a model path: names are joined by dots; the items of a list stand in square brackets, a thing that has an
 ``id`` by its id (``supply.substations[A].km``), a row of the limits by system and name (``limits[dc3000 u_max2]``), any
-other item by its index from 0 (``line.gradients[7].to_km``). Free keys of a mapping stand in brackets too. An index is
-understood for things with an id as well, but an id wins: ``line.tracks[1]`` is the track whose id is 1.
+other item by its index from 0 (``line.gradients[7].to_km``), and so are items that share an id. Free keys of a mapping
+stand in brackets too. An index is understood for things with an id as well, but an id wins: ``line.tracks[1]`` is the
+track whose id is 1.
 """
 
 from __future__ import annotations
@@ -107,9 +108,11 @@ def path_of(root: str, loc: Loc, data: Any) -> str:
     path = root
     for token in loc:
         if isinstance(token, int):
-            item = data[token] if isinstance(data, list | tuple) and token < len(data) else None
-            path += f"[{shorten(item_name(item) or str(token))}]"
-            data = item
+            items = data if isinstance(data, list | tuple) else ()
+            data = items[token] if token < len(items) else None
+            name = item_name(data)
+            is_own = name is not None and sum(item_name(item) == name for item in items) == 1
+            path += f"[{shorten(name) if name is not None and is_own else token}]"
         else:
             is_name = re.fullmatch(r"\w+", token) and not token[0].isdigit()
             path += (f".{token}" if path else token) if is_name else f"[{shorten(token)}]"

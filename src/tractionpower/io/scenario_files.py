@@ -6,24 +6,26 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel
 
 from tractionpower.errors import InputError, Problem
-from tractionpower.io.csv_files import read_csv
+from tractionpower.io.documents import Reader
+from tractionpower.io.file_names import file_names
 from tractionpower.io.finder import STUDY_FILE, Study, find_study
 from tractionpower.io.limits_files import limits_text, read_limits, shipped_limits
-from tractionpower.io.problems import Input, format_problem, in_file_order, problems_of
-from tractionpower.io.provenance import Loc, Mark, Provenance, path_of
-from tractionpower.io.shapes import Shape, shape_of
+from tractionpower.io.problems import in_file_order
+from tractionpower.io.provenance import Mark, Provenance
+from tractionpower.io.rolling_stock import RollingStock
+from tractionpower.io.stock_finder import FOLDER
 from tractionpower.io.text_files import Source, relative_label, write_files
-from tractionpower.io.wording import shown
-from tractionpower.io.yaml_files import read_yaml
 from tractionpower.io.yaml_text import document
 from tractionpower.model.base import FORMAT
 from tractionpower.model.limits import Limit, overlay
 from tractionpower.model.line import Line
-from tractionpower.model.scenario import Scenario, StudyFile, Timetable
+from tractionpower.model.scenario import Scenario, StudyFile
 from tractionpower.model.supply import Supply
+from tractionpower.model.timetable import Timetable
+from tractionpower.model.vehicle import Train, Vehicle
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -85,18 +87,19 @@ def read_scenario(study: str | Path) -> tuple[LoadedScenario | None, list[Proble
         If there is no such study.
     """
     found = find_study(study)
-    reader = _Reader(found)
-    scenario = reader.scenario()
-    problems = in_file_order(reader.problems)
+    files = _StudyReader(found)
+    scenario = files.scenario()
+    problems = in_file_order(files.reader.problems)
     if scenario is None:
         return None, problems
-    return LoadedScenario(scenario, Provenance(reader.root), found.folder, tuple(problems), found.origin), problems
+    return LoadedScenario(scenario, Provenance(files.root), found.folder, tuple(problems), found.origin), problems
 
 
 def save_scenario(scenario: Scenario, folder: str | Path) -> None:
     """Write a scenario as a study; loading it gives an equal scenario with the same `input_hash`.
 
     Keys that have their default are left out; of the limits only rows that differ from the shipped ones are written.
+    Trains and vehicles go into ``rollingstock`` beside the study.
 
     Raises
     ------
@@ -108,6 +111,7 @@ def save_scenario(scenario: Scenario, folder: str | Path) -> None:
     if scenario.timetable.trains:
         study["timetable"] = "timetable.yaml"
         texts["timetable.yaml"] = document(_dump(scenario.timetable))
+    texts |= _stock_texts("vehicles", scenario.vehicles) | _stock_texts("trains", scenario.trains)
     limits = limits_text(scenario.limits)
     if limits:
         study["limits"] = "limits.csv"
@@ -122,14 +126,22 @@ def _dump(model: BaseModel) -> dict[str, Any]:
     return {"format": FORMAT, **model.model_dump(mode="json", by_alias=True, exclude_defaults=True)}
 
 
+def _stock_texts(kind: str, items: tuple[Train, ...] | tuple[Vehicle, ...]) -> dict[str, str]:
+    names = file_names(item.id for item in items)
+    return {f"{FOLDER}/{kind}/{names[item.id]}": document(_dump(item)) for item in items}
+
+
 @dataclass(slots=True)
-class _Reader:
-    # Reads the files of one study and collects problems until all are read.
+class _StudyReader:
+    # Reads the files of one study; problems are collected until all are read.
     found: Study
-    problems: list[Problem] = field(default_factory=list)
+    reader: Reader = field(init=False)
+    stock: RollingStock = field(init=False)
     root: Mark = field(init=False)
 
     def __post_init__(self) -> None:
+        self.reader = Reader(self.found.folder)
+        self.stock = RollingStock(self.reader, self.found.folder)
         self.root = Mark(self.found.file.name)
 
     def scenario(self) -> Scenario | None:
@@ -139,34 +151,37 @@ class _Reader:
         line = self._part("line", names, Line)
         supply = self._part("supply", names, Supply)
         timetable = self._part("timetable", names, Timetable) if names.get("timetable") is not None else Timetable()
+        self.root.children |= {"trains": self.stock.trains.mark(), "vehicles": self.stock.vehicles.mark()}
         limits = self._limits(names)
         if study is None or line is None or supply is None or timetable is None or limits is None:
             return None
-        if any(problem.severity == "error" for problem in self.problems):
+        if self.reader.has_errors:
             return None
         own = {name: getattr(study, name) for name in _OF_THE_STUDY}
-        return Scenario(line=line, supply=supply, timetable=timetable, limits=limits, **own)
+        trains, vehicles = self.stock.trains.sorted(), self.stock.vehicles.sorted()
+        return Scenario(line=line, supply=supply, timetable=timetable, trains=trains, vehicles=vehicles, limits=limits, **own)
 
     def _study(self, source: Source) -> tuple[dict[str, Any], StudyFile | None]:
         # Also of a broken study file the parts are read, so that their problems are told in the same breath.
-        content = self._read(source, StudyFile)
+        content = self.reader.read(source, StudyFile)
         if content is None:
             parts = {key: StudyFile.model_fields[key].default for key in ("line", "supply")}
             return {key: name for key, name in parts.items() if (self.found.folder / name).is_file()}, None
         self.root = content.mark
-        study = self._validated(StudyFile, content)
+        study = self.reader.validated(StudyFile, content)
         defaults = {key: info.default for key, info in StudyFile.model_fields.items()}
         return {key: content.data.get(key, default) for key, default in defaults.items()}, study
 
     def _part(self, key: str, names: dict[str, Any], model: type[Model]) -> Model | None:
         source = self._source(key, names)
-        content = self._read(source, model) if source is not None else None
+        content = self.reader.read(source, model) if source is not None else None
         if content is None:
             return None
         self.root.children[key] = content.mark
-        if model is Timetable:
-            self._refuse_trains(content)
-        return self._validated(model, content)
+        part = self.reader.validated(model, content)
+        if model is Timetable:  # also of a broken one, so that problems of its trains are told in the same breath
+            self.stock.add_timetable(content)
+        return part
 
     def _limits(self, names: dict[str, Any]) -> tuple[Limit, ...] | None:
         if names.get("limits") is None:
@@ -177,7 +192,7 @@ class _Reader:
         try:
             rows, self.root.children["limits"] = read_limits(source)
         except InputError as error:
-            self.problems += error.problems
+            self.reader.problems += error.problems
             return None
         return overlay(shipped_limits(), rows)
 
@@ -185,73 +200,4 @@ class _Reader:
         name = names.get(key)
         if not isinstance(name, str):  # told by the check of the study file
             return None
-        return self._named(name, self.found.file, key, self.root.find((key,)).place)
-
-    def _named(self, name: str, namer: Path, root: str, named_at: str) -> Source:
-        file = namer.parent / name
-        return Source(file, relative_label(file, self.found.folder) if "\0" not in name else shown(name), root, named_at)
-
-    def _read(self, source: Source, model: type[BaseModel]) -> Input | None:
-        try:
-            read = read_yaml(source)
-        except InputError as error:
-            self.problems += error.problems
-            return None
-        self.problems += read.problems
-        content = Input(source.root, read.data, read.mark, shape_of(model), source.file)
-        newer = format_problem(content)
-        if newer is not None:
-            self.problems.append(newer)
-            return None
-        return content
-
-    def _validated(self, model: type[Model], content: Input) -> Model | None:
-        silent = self._expand(content.data, content.shape, content.mark, (), content)
-        try:
-            return model.model_validate(content.data)
-        except ValidationError as error:
-            self.problems += problems_of(error, content, silent)
-            return None
-
-    def _refuse_trains(self, content: Input) -> None:
-        trains = content.data.pop("trains", None)
-        if not trains:
-            return
-        place = content.mark.find(("trains",)).place
-        remedy = "this version computes networks only: leave the timetable out or its list of trains empty"
-        self.problems.append(Problem("no_trains_yet", "timetable.trains", shown(trains), "[]", remedy, place=place))
-
-    def _expand(self, data: Any, shape: Shape, mark: Mark, loc: Loc, content: Input) -> set[Loc]:
-        # Puts the rows of CSV files in the place of their names; returns the places that failed.
-        silent: set[Loc] = set()
-        items = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
-        for key, value in list(items):
-            child = shape.child(key)
-            if child is None:
-                continue
-            if child.kind == "rows" and isinstance(value, str):
-                silent |= self._table(data, key, child, mark, (*loc, key), content)
-            elif child.kind == "time" and isinstance(value, float):
-                data[key] = str(value)  # 7.30 is no time; as a number it would pass for seconds
-            else:
-                silent |= self._expand(value, child, mark.find((key,)), (*loc, key), content)
-        return silent
-
-    def _table(self, data: Any, key: Any, shape: Shape, mark: Mark, loc: Loc, content: Input) -> set[Loc]:
-        name, data[key] = data[key], []
-        path = path_of(content.root, loc, content.data)
-        place = mark.find((key,)).place
-        row = shape.child(0)
-        if row is None or not name.lower().endswith(".csv"):
-            self.problems.append(
-                Problem("wrong_type", path, shown(name), shape.allowed(), "a CSV file ends in .csv", place=place)
-            )
-            return {loc}
-        try:
-            table = read_csv(self._named(name, content.file, path, place), row)
-        except InputError as error:
-            self.problems += error.problems
-            return {loc}
-        self.problems += table.problems
-        data[key], mark.children[key] = table.rows, table.mark
-        return {loc} if table.problems else set()
+        return self.reader.named(name, self.found.file, key, self.root.find((key,)).place)

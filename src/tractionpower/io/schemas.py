@@ -10,14 +10,18 @@ from tractionpower.errors import UsageError
 from tractionpower.io.wording import did_you_mean, shown
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
-from tractionpower.model.scenario import StudyFile, Timetable
+from tractionpower.model.scenario import StudyFile
 from tractionpower.model.supply import Supply
+from tractionpower.model.timetable import Timetable
+from tractionpower.model.vehicle import Train, Vehicle
 
 _MODELS: dict[str, type[BaseModel]] = {
     "study": StudyFile,
     "line": Line,
     "supply": Supply,
     "timetable": Timetable,
+    "train": Train,
+    "vehicle": Vehicle,
     "limits": Limit,
 }
 
@@ -43,7 +47,9 @@ def schema(name: str) -> dict[str, Any]:
         known = f"known are {', '.join(_MODELS)}"
         raise UsageError("; ".join(part for part in (f"there is no schema {shown(name)}", hint, known) if part))
     made = _MODELS[name].model_json_schema(by_alias=True)
-    made["properties"] = {key: _or_csv(node) for key, node in made["properties"].items()}
+    for node in (made, *made.get("$defs", {}).values()):
+        if "properties" in node:
+            node["properties"] = {key: _or_csv(child) for key, child in node["properties"].items()}
     return {"$schema": _DIALECT, **made}
 
 

@@ -13,11 +13,15 @@ from typing import Any, Literal
 
 from pydantic import BaseModel
 
-Kind = Literal["number", "integer", "time", "choice", "names", "identifier", "text", "rows", "list", "mapping", "other"]
+Kind = Literal[
+    "number", "integer", "boolean", "time", "choice", "names", "identifier", "text", "rows", "list", "mapping", "other"
+]
+Loc = tuple[str | int, ...]
 
 _WORDS: dict[Kind, str] = {
     "number": "a number",
     "integer": "a whole number",
+    "boolean": "true or false",
     "time": "a time HH:MM or HH:MM:SS, beyond 24:00:00 for the next day",
     "names": "a list of names",
     "identifier": "a name or a whole number",
@@ -28,12 +32,22 @@ _WORDS: dict[Kind, str] = {
     "other": "",
 }
 
-_KINDS: dict[str, Kind] = {"number": "number", "integer": "integer", "string": "text", "object": "mapping"}
+_KINDS: dict[str, Kind] = {
+    "number": "number",
+    "integer": "integer",
+    "boolean": "boolean",
+    "string": "text",
+    "object": "mapping",
+}
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """One node of a JSON schema with its references resolved."""
+    """One node of a JSON schema with its references resolved.
+
+    A drive is one of several declarations, told apart by a key (``kind``), its tag: such a union knows this key only,
+    and `branch` picks the declaration that given data mean.
+    """
 
     schema: Mapping[str, Any]
     definitions: Mapping[str, Any]
@@ -41,12 +55,22 @@ class Shape:
     @property
     def keys(self) -> tuple[str, ...]:
         """Known keys of a mapping, in the order of declaration."""
-        return tuple(self.schema.get("properties", ()))
+        return (self.tag_key,) if self.tag_key else tuple(self.schema.get("properties", ()))
 
     @property
     def required(self) -> tuple[str, ...]:
         """Keys that must be given."""
         return tuple(self.schema.get("required", ()))
+
+    @property
+    def tag_key(self) -> str:
+        """The key that tells the branches of a union apart; empty for anything else."""
+        return str(self.schema.get("discriminator", {}).get("propertyName", ""))
+
+    @property
+    def tags(self) -> tuple[str, ...]:
+        """Values of that key, one for each branch."""
+        return tuple(self.schema.get("discriminator", {}).get("mapping", ()))
 
     @property
     def unit(self) -> str:
@@ -70,6 +94,8 @@ class Shape:
         """What a value of this shape looks like."""
         if self.choices:
             return "choice"
+        if self.tag_key:
+            return "mapping"
         name = self.schema.get("type")
         if name == "array":
             return self._kind_of_list()
@@ -86,19 +112,46 @@ class Shape:
         return "names" if item.kind == "identifier" else "list"
 
     def child(self, token: str | int) -> Shape | None:
-        """Return the shape of a key or of the items of a list; None if there is none."""
+        """Return the shape of a key, of the items of a list, or of the branch of a union by its tag; None if there is none."""
+        if self.tag_key:
+            return self._child_of_union(token)
         if isinstance(token, int):
             node = self.schema.get("items")
         else:
             node = self.schema.get("properties", {}).get(token, self.schema.get("additionalProperties"))
         return Shape(_resolved(node, self.definitions), self.definitions) if isinstance(node, dict) else None
 
-    def find(self, tokens: tuple[str | int, ...]) -> Shape | None:
+    def _child_of_union(self, token: str | int) -> Shape | None:
+        branches = self.schema["discriminator"]["mapping"]
+        if token == self.tag_key:
+            first = Shape(_resolved({"$ref": branches[self.tags[0]]}, self.definitions), self.definitions).child(token)
+            return Shape({"enum": self.tags, "description": first.meaning if first is not None else ""}, self.definitions)
+        if token not in self.tags:
+            return None
+        return Shape(_resolved({"$ref": branches[token]}, self.definitions), self.definitions)
+
+    def branch(self, data: Any) -> Shape:
+        """Return the branch of a union that `data` mean by their tag; this shape itself if it has none, or they name none."""
+        tag = data.get(self.tag_key) if self.tag_key and isinstance(data, dict) else None
+        found = self._child_of_union(tag) if isinstance(tag, str) and tag in self.tags else None
+        return self if found is None else found
+
+    def find(self, tokens: Loc) -> Shape | None:
         """Return the shape at the end of `tokens`, or None."""
         shape: Shape | None = self
         for token in tokens:
             shape = shape.child(token) if shape is not None else None
         return shape
+
+    def untagged(self, tokens: Loc) -> Loc:
+        """Return `tokens` of a validation error without the tags of unions, which are no keys of a file."""
+        kept: list[str | int] = []
+        shape: Shape | None = self
+        for token in tokens:
+            if shape is None or token not in shape.tags:
+                kept.append(token)
+            shape = shape.child(token) if shape is not None else None
+        return tuple(kept)
 
     def allowed(self) -> str:
         """Return what may stand here, in words: kind, bounds and unit, or the choices."""

@@ -102,7 +102,9 @@ def _decode(source: Source, raw: bytes) -> str:
 
 
 def write_files(folder: Path, texts: Mapping[str, str]) -> None:
-    """Write text files into `folder`, which is made if it is missing: first all aside, then moved in one by one, in order.
+    """Write text files into `folder` by their relative names: first all aside, then moved in one by one, in order.
+
+    Folders that are missing are made.
 
     Raises
     ------
@@ -114,8 +116,10 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         aside = Path(tempfile.mkdtemp(prefix=".writing-", dir=folder))
         for name, text in texts.items():
+            (aside / name).parent.mkdir(parents=True, exist_ok=True)
             (aside / name).write_text(text, encoding="utf-8", newline="\n")
         for name in texts:
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (aside / name).replace(folder / name)
     except OSError as error:
         raise OutputError(f"cannot write into {printable(str(folder))}: {error.strerror or error}") from error

@@ -1,4 +1,8 @@
-"""Plain values to YAML text: rows of a list on one line each, texts quoted wherever a reader could mistake them."""
+"""Plain values to YAML text: rows of a list on one line each, texts quoted wherever a reader could mistake them.
+
+A row that holds rows itself, such as a train with its calls, and a mapping that does, such as a drive with its
+magnetisation curve, is written key by key; so is a mapping that is too long for a line.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,7 @@ from typing import Any
 
 # Plain only where every YAML reader, also one of version 1.1, sees the same text.
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_./-]*(?: [A-Za-z0-9_./-]+)*")
+_LONGEST = 130
 _RESERVED = {"y", "n", "yes", "no", "on", "off", "true", "false", "null", "inf", "nan"}
 
 
@@ -42,11 +47,26 @@ def flow(value: Any) -> str:
     return scalar(value)
 
 
-def entry(key: str, value: Any) -> str:
-    """Return one key of a file: a list of mappings as one row per line, anything else on the line of the key."""
-    if isinstance(value, list | tuple) and any(isinstance(item, Mapping) for item in value):
-        return "\n".join([f"{key}:", *(f"  - {flow(item)}" for item in value)])
-    return f"{key}: {flow(value)}"
+def entry(key: str, value: Any, indent: str = "") -> str:
+    """Return one key of a file: a list of mappings as one row per line, anything else on the line of the key if it can."""
+    head = f"{indent}{scalar(key)}:"
+    if _has_rows(value):
+        return "\n".join([head, *(_row(item, indent + "  ") for item in value)])
+    line = f"{head} {flow(value)}"
+    if isinstance(value, Mapping) and value and (len(line) > _LONGEST or any(map(_has_rows, value.values()))):
+        return "\n".join([head, *(entry(str(name), item, indent + "  ") for name, item in value.items())])
+    return line
+
+
+def _row(item: Any, indent: str) -> str:
+    if not (isinstance(item, Mapping) and any(map(_has_rows, item.values()))):
+        return f"{indent}- {flow(item)}"
+    lines = "\n".join(entry(str(name), value, indent + "  ") for name, value in item.items())
+    return f"{indent}- {lines.removeprefix(indent + '  ')}"
+
+
+def _has_rows(value: Any) -> bool:
+    return isinstance(value, list | tuple) and any(isinstance(item, Mapping) for item in value)
 
 
 def document(data: Mapping[str, Any]) -> str:

@@ -34,9 +34,10 @@ def apply_change(scenario: Scenario, change: str) -> Scenario:
     scenario
         The base; it stays as it is.
     change
-        ``PATH=VALUE``, for example ``supply.section_cabins[C].state=bypassed``. Lists whose items have an ``id`` are
-        addressed by it, other lists by a zero-based index. The value is read as in YAML: a number, ``true``, ``false``,
-        ``null`` (clears an optional value) or a text; a text in quotes stays a text.
+        ``PATH=VALUE``, for example ``supply.section_cabins[C].state=bypassed``. Items of a list are addressed by their
+        ``id``, or by a zero-based index where they have none or no id is a number (``trains[ic].vehicles[0].count=2``).
+        The value is read as in YAML: a number, ``true``, ``false``, ``null`` (clears an optional value) or a text; a
+        text in quotes stays a text.
 
     Raises
     ------
@@ -81,10 +82,13 @@ def model_path(plain: Any, location: Sequence[str | int]) -> str:
     path = ""
     for step in location:
         if isinstance(step, int):
-            item = plain[step] if isinstance(plain, list | tuple) and step < len(plain) else None
-            name = item.get("id") if isinstance(item, dict) else None
-            path += f"[{step if name is None else name}]"
-            plain = item
+            items = plain if isinstance(plain, list | tuple) else ()
+            plain = items[step] if step < len(items) else None
+            name = plain.get("id") if isinstance(plain, dict) else None
+            is_own = sum(isinstance(item, dict) and item.get("id") == name for item in items) == 1
+            path += f"[{step if name is None or not is_own else name}]"
+        elif isinstance(plain, dict) and step not in plain and step == plain.get("kind"):
+            continue  # not a key, but which of several declarations, such as those of drives, was meant
         else:
             path += f"[{step}]" if not step.isidentifier() else f".{step}" if path else step
             plain = plain.get(step) if isinstance(plain, dict) else None
@@ -171,11 +175,13 @@ def _key(container: Any, step: str, path: str, done: str) -> Any:
         keys = _item_keys(container)
     else:
         raise _refusal("unknown_path", path, f"{done} is a single value and has no part {step!r}", remedy=f"set {done} itself")
-    found = keys.get(step, [])
+    found = keys.get(step) or (_by_index(container, keys, step) if isinstance(container, list) else [])
     if not found:
         raise _unknown(path, done or "the scenario", step, list(keys))
     if len(found) > 1:
-        raise _refusal("ambiguous_path", path, f"{done} has {len(found)} items with id {step!r}", remedy="give each its own id")
+        raise _refusal(
+            "ambiguous_path", path, f"{done} has {len(found)} items with id {step!r}", remedy="name it by its index, from 0"
+        )
     return found[0]
 
 
@@ -186,6 +192,12 @@ def _item_keys(items: list[Any]) -> dict[str, list[int]]:
     for index, item in enumerate(items):
         keys.setdefault(str(item["id"] if by_id else index), []).append(index)
     return keys
+
+
+def _by_index(items: list[Any], keys: dict[str, list[int]], step: str) -> list[int]:
+    """Return the item of which `step` is the index, if an index cannot be taken for an id."""
+    is_index = step.isdecimal() and len(step) < 10 and not any(map(str.isdecimal, keys))
+    return [int(step)] if is_index and int(step) < len(items) else []
 
 
 def _unknown(path: str, owner: str, step: str, names: list[str]) -> InputError:

@@ -89,7 +89,9 @@ class TrainCurrentLimit(Stretch):
     """Largest current that one train may take from the line."""
 
     max_current_a: Real = field("max_current_a", "Largest train current in motion.", above=0)
-    standstill_current_a: Real | None = field("standstill_current_a", "Largest current at standstill.", above=0, default=None)
+    standstill_current_a: Real | None = field(
+        "standstill_current_a", "Largest current at standstill; left out: max_current_a.", above=0, default=None
+    )
     tracks: Tracks | None = Field(default=None, description=_TRACKS)
 
 
