@@ -128,6 +128,20 @@ def test_an_unfinished_run_keeps_its_parts_with_a_note(folder, write_run, rows):
     read_run(folder)
 
 
+@pytest.mark.parametrize("ended", [True, False])
+def test_a_folder_of_results_inside_is_no_foreign_matter(folder, rows, write_run, ended):
+    inside = RunWriter(folder / "journey", "study, journey", HASH)
+    inside.append("loads", rows(0, 3))
+    if ended:
+        inside.finish({"study": "study, journey"}, [])
+    write_run()
+    assert (folder / "journey" / "run.json").is_file() == ended
+    (folder / "run.json").unlink()
+    (folder / "other").mkdir()
+    with pytest.raises(UsageError, match="no results of a run"):
+        write_run()
+
+
 def test_what_was_not_begun_leaves_no_trace(tmp_path):
     RunWriter(tmp_path / "a" / "b" / "c", "study", HASH).discard()
     assert list(tmp_path.iterdir()) == []

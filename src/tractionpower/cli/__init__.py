@@ -13,7 +13,7 @@ from typing import Annotated
 
 import typer
 
-from tractionpower.cli import check, new, run, schema, validate
+from tractionpower.cli import check, curves, journey, new, run, schema, validate
 from tractionpower.cli.messages import DONE, exit_code_of
 
 app = typer.Typer(
@@ -26,6 +26,8 @@ app = typer.Typer(
 )
 app.command("run")(run.run)
 app.command("check")(check.check)
+app.command("journey")(journey.journey)
+app.command("curves")(curves.curves)
 app.command("validate")(validate.validate)
 app.command("schema")(schema.schema)
 app.command("new")(new.new)

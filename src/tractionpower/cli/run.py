@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-import io
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -30,6 +28,7 @@ def run(
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 4 when a limit is violated.")] = False,
 ) -> None:
     """Compute a study and write its results."""
+    from tractionpower.cli.console import warn_of_compilation
     from tractionpower.cli.messages import tell, tell_problems
     from tractionpower.io.scenario_files import load_scenario
     from tractionpower.model.change import apply_changes
@@ -38,7 +37,7 @@ def run(
     scenario = apply_changes(loaded.scenario, changes or [])
     folder = out if out is not None else Path("reports") / loaded.folder.name
     tell(f"{scenario.name or loaded.folder.name}: {loaded.origin}")
-    _warn_of_compilation()
+    warn_of_compilation()
     prepared, writer = _prepare(loaded, scenario, folder, force)
     tell_problems(loaded.provenance.place([*loaded.problems, *prepared.warnings]))
     outcome = _execute(prepared, writer)
@@ -49,14 +48,6 @@ def run(
     for path in writer.beside:
         tell(f"{path.name} was written beside a file that another program holds open")
     raise typer.Exit(_exit_code(outcome, strict))
-
-
-def _warn_of_compilation() -> None:
-    from tractionpower.cli.messages import tell
-    from tractionpower.kernels.jit import is_compiled
-
-    if not is_compiled():
-        tell("first run on this machine: compiling the kernels, up to a minute; later starts use the cache")
 
 
 def _prepare(loaded: LoadedScenario, scenario: Scenario, folder: Path, force: bool) -> tuple[Run, RunWriter]:
@@ -123,13 +114,9 @@ def _exit_code(outcome: Outcome, strict: bool) -> int:
 
 def _show(outcome: Outcome, prepared: Run) -> None:
     """Print what a designer asks first: the loads of the substations, the voltages, the verdicts."""
-    from rich.console import Console
-    from rich.table import Table
+    from tractionpower.cli.console import new_console, new_table
 
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="replace")  # a pipe on Windows may lack letters of a name
-    console = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
-    console.width = max(console.width, 110)  # a pipe or a narrow window shall not break the table
+    console = new_console()
     figures = {(figure["name"], figure["place"]): figure["value"] for figure in outcome.key_figures}
     columns = {
         "highest_current_a": "highest current [A]",
@@ -138,10 +125,7 @@ def _show(outcome: Outcome, prepared: Run) -> None:
         "highest_power_kw": "highest power [kW]",
         "energy_kwh": "energy [kWh]",
     }
-    table = Table(box=None, pad_edge=False, padding=(0, 3, 0, 0))
-    table.add_column("substation")
-    for heading in columns.values():
-        table.add_column(heading, justify="right", no_wrap=True)
+    table = new_table(["substation"], list(columns.values()))
     for substation in prepared.scenario.supply.substations:
         values = (figures[name, f"substation {substation.id}"] for name in columns)
         table.add_row(substation.id, *(f"{value:.1f}" for value in values))

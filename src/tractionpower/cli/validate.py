@@ -55,14 +55,15 @@ def _show(case: str, findings: list[Finding]) -> None:
     for heading in ("expected", "computed", "tolerance"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("")
-    title = ""
+    last = ""
     for finding in findings:
         if finding.figure == "status" and finding.met:
             continue
-        first = "" if finding.check == title else finding.check
+        title = f"{finding.check} ({finding.form} form)" if finding.form else finding.check
+        first = "" if title == last else title
         numbers = [_shown(value, finding.tolerance) for value in (finding.expected, finding.computed)]
         table.add_row(first, finding.figure, *numbers, f"{finding.tolerance:g}", "met" if finding.met else "MISSED")
-        title = finding.check
+        last = title
     console = Console(highlight=False, markup=False)
     console.width = max(console.width, WIDTH)
     console.print(f"{case}: {findings[0].source}", soft_wrap=True, style="bold")

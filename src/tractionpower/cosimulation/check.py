@@ -8,6 +8,7 @@ from tractionpower.alignment.checks import check_line
 from tractionpower.errors import Problem
 from tractionpower.model.base import format_time
 from tractionpower.model.scenario import Clock, Scenario
+from tractionpower.movement.checks import check_movement
 from tractionpower.results.columns import TABLES
 from tractionpower.supply.checks import check_supply
 
@@ -17,10 +18,24 @@ def check_scenario(scenario: Scenario) -> list[Problem]:
     return [
         *check_line(scenario.line),
         *check_supply(scenario.supply, scenario.line, scenario.limits),
+        *check_movement(scenario),
         *_check_clock(scenario),
         *_check_output(scenario),
         *_check_connections(scenario),
     ]
+
+
+def check_coupling(scenario: Scenario) -> list[Problem]:
+    """Return what a run of trains and network in one cannot do in this version."""
+    trains = len(scenario.timetable.trains)
+    if not trains:
+        return []
+    found = f"{trains} train{'s' if trains > 1 else ''}"
+    remedy = (
+        "this version computes theoretical journeys of trains (tractionpower journey), and networks with loads; the"
+        " co-simulation of both comes with the next one: leave the timetable out, or use tractionpower journey STUDY"
+    )
+    return [Problem("trains_not_coupled_yet", "timetable.trains", found, "none in a run", remedy)]
 
 
 def step_count(clock: Clock) -> int:

@@ -5,18 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import metadata
 from typing import Any, Protocol
 
 import numpy as np
 import pyarrow as pa
 
-from tractionpower.cosimulation.check import check_scenario, step_count
+from tractionpower.cosimulation.check import check_coupling, check_scenario, step_count
 from tractionpower.cosimulation.recorder import Recorder
 from tractionpower.errors import Problem, raise_errors
 from tractionpower.kernels.block import advance
 from tractionpower.kernels.tables import LOAD, SOURCE, BlockTables, new_buffers, new_state
 from tractionpower.model.scenario import Scenario
+from tractionpower.results.versions import versions
 from tractionpower.supply.characteristics import no_load_voltage
 from tractionpower.supply.compile import SupplyTables, compile_network
 
@@ -84,7 +84,7 @@ class Run:
 
     def __init__(self, scenario: Scenario, writer: Writer, study: str = "") -> None:
         started = time.perf_counter()
-        problems = check_scenario(scenario)
+        problems = [*check_scenario(scenario), *check_coupling(scenario)]
         raise_errors(problems)
         self.scenario, self.study = scenario, study
         self.warnings = tuple(problems)
@@ -127,7 +127,7 @@ class Run:
             "name": self.scenario.name,
             "input_hash": self.scenario.input_hash,
             "seed": self.scenario.seed,
-            "versions": _versions(),
+            "versions": versions(),
             "wall_seconds": self.wall_seconds,
             "compile_seconds": self.compile_seconds,
             "steps": self.done,
@@ -153,14 +153,3 @@ def compile_block(scenario: Scenario, supply: SupplyTables) -> BlockTables:
     loads["to_s"] = [np.inf if load.to is None else load.to - ROUNDING_S for load in supply.loads]
     clock = np.array([scenario.clock.start, scenario.clock.step_s])
     return BlockTables(supply.network, supply.edges, sources, loads, supply.feeder_end, supply.section_table, clock)
-
-
-def _versions() -> dict[str, str]:
-    names = ("tractionpower", "numba", "numpy", "pyarrow", "pydantic")
-    found = {}
-    for name in names:
-        try:
-            found[name] = metadata.version(name)
-        except metadata.PackageNotFoundError:  # run from a source folder
-            found[name] = "not installed"
-    return found

@@ -1,51 +1,29 @@
-"""Figures of a run, in one style."""
+"""Figures of a run."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import matplotlib as mpl
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from tractionpower.model.limits import find_limit
 from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.style import COLOURS, DASHES, STYLE, new_figure, save
 from tractionpower.results.results import Results
-
-# Okabe and Ito's colours stay apart for colour-blind eyes.
-# Lines of several tracks often lie on each other: dashes let the lower one show through.
-DASHES = ("-", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-STYLE: Any = {
-    "font.size": 9.0,
-    "axes.grid": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.6,
-    "legend.frameon": False,
-    "figure.dpi": 150.0,
-}
 
 
 def write_figures(results: Results, scenario: Scenario, folder: Path) -> list[Path]:
     """Write all figures of a run as PNG into `folder` and return their paths."""
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / "voltage_along_line.png"
-    temporary = path.with_suffix(".tmp")
-    voltage_along_line(results, scenario).savefig(temporary, format="png")
-    temporary.replace(path)
-    return [path]
+    return [save(voltage_along_line(results, scenario), folder / "voltage_along_line.png")]
 
 
 def voltage_along_line(results: Results, scenario: Scenario) -> Figure:
     """Draw lowest, mean and highest voltage along the line, with limits, substations, section cabins and loads."""
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(9.0, 4.2), layout="constrained")
-        FigureCanvasAgg(figure)
+        figure = new_figure(9.0, 4.2)
         axes = figure.add_subplot()
         profile = results.table("profile")
         for number, (track, rows) in enumerate(profile.groupby("track", observed=True)):

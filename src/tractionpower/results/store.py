@@ -257,8 +257,13 @@ def _refuse_foreign(folder: Path, study: str, *, force: bool) -> None:
         owner = "an unreadable run" if run is None else run.get("study")
         if owner != study:
             raise UsageError(f"{folder} holds results of another study ({owner!r}, not {study!r}); choose --out, or --force")
-    elif any(entry.name != RUNNING for entry in folder.iterdir()):
+    elif not all(entry.name == RUNNING or _holds_results(entry) for entry in folder.iterdir()):
         raise UsageError(f"{folder} holds files that are no results of a run; choose another --out, or --force")
+
+
+def _holds_results(entry: Path) -> bool:
+    """Return whether something in a folder is a folder of results itself: `journey` writes beside what `run` writes."""
+    return (entry / RUNNING).is_dir() or _run_file(entry).is_file()
 
 
 def _sha256(path: Path) -> str:

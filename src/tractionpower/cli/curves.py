@@ -1,0 +1,73 @@
+"""``tractionpower curves TRAIN``: effort, resistance and current of a train over speed and voltage."""
+
+# ruff: noqa: PLC0415 - heavy modules are imported inside the functions that need them
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from tractionpower.movement.curves import TrainCurves
+
+
+def curves(
+    train: Annotated[
+        str, typer.Argument(metavar="TRAIN", help="A shipped train or vehicle, or the file of a train or a vehicle.")
+    ],
+    voltage: Annotated[
+        list[float] | None, typer.Option("--voltage", metavar="V", help="A voltage; may be repeated. Default: from U_min2 up.")
+    ] = None,
+    system: Annotated[str, typer.Option("--system", help="System of the voltage limits.")] = "dc3000",
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for figure and table; default reports/curves/ here.")] = None,
+) -> None:
+    """Draw effort and current of a train over its speed."""
+    from tractionpower.cli.messages import tell
+    from tractionpower.errors import OutputError, UsageError
+    from tractionpower.io.limits_files import shipped_limits
+    from tractionpower.io.rolling_stock import load_train
+    from tractionpower.model.limits import system_voltages
+    from tractionpower.movement.curves import drive_curves
+    from tractionpower.reporting.curve_figures import curves_figure, write_curves_csv
+    from tractionpower.reporting.style import png_names, save
+
+    limits = shipped_limits()
+    if system not in {limit.system for limit in limits}:
+        raise UsageError(f"no system {system!r}; known: {', '.join(sorted({limit.system for limit in limits}))}")
+    for value in voltage or []:
+        if not (math.isfinite(value) and 1.0 <= value <= 100_000.0):
+            raise UsageError(f"--voltage {value:g}: allowed are 1 to 100000 V")
+    declared, vehicles = load_train(train)
+    chosen = sorted(set(voltage)) if voltage else None
+    drawn = drive_curves(declared, vehicles, limits, system, chosen)
+    nominal_v = system_voltages(limits, system).u_n
+    at_nominal = drive_curves(declared, vehicles, limits, system, [nominal_v])
+    _show(declared.name or declared.id, at_nominal, drawn)
+    folder = out if out is not None else Path("reports") / "curves"
+    figure = folder / png_names([declared.id])[declared.id]
+    title = f"{declared.name or declared.id}: {drawn.mass_kg / 1000.0:.1f} t, {drawn.length_m:.1f} m"
+    try:
+        paths = [save(curves_figure(drawn, title), figure), write_curves_csv(drawn, figure.with_suffix(".csv"))]
+    except OSError as error:
+        raise OutputError(f"curves cannot be written into {folder}: {error}") from error
+    tell("results: " + ", ".join(str(path) for path in paths))
+
+
+def _show(name: str, nominal: TrainCurves, drawn: TrainCurves) -> None:
+    """Print what one asks first of a train: how it starts, how fast it can run, what it takes."""
+    from tractionpower.cli.console import new_console
+    from tractionpower.reporting.curve_figures import balancing_speed
+
+    console = new_console()
+    curve = nominal.curves[0]
+    console.print(f"{name}: {nominal.mass_kg / 1000.0:.1f} t, {nominal.length_m:.1f} m, {3.6 * nominal.speed_mps[-1]:g} km/h")
+    console.print(f"starting effort at {curve.voltage_v:g} V: {curve.effort_n[0] / 1000.0:.1f} kN")
+    speed = balancing_speed(nominal)
+    words = "above its greatest speed" if speed is None else f"{3.6 * speed:.1f} km/h"
+    console.print(f"balancing speed on the level at {curve.voltage_v:g} V: {words}")
+    most = max(((float(c.current_a.max()), c) for c in (curve, *drawn.curves)), key=lambda pair: pair[0])
+    at = 3.6 * float(drawn.speed_mps[int(most[1].current_a.argmax())])
+    console.print(f"greatest current: {most[0]:.0f} A, at {most[1].voltage_v:g} V and {at:.0f} km/h")

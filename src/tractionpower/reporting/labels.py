@@ -1,0 +1,44 @@
+"""Which names fit along an axis, and which ticks suit a clock."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+CLOCK_STEPS_S = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 21600)
+"""Steps between ticks of a clock [s]."""
+
+
+def fitting(places: Sequence[float], important: Sequence[bool], gap: float) -> list[int]:
+    """Return the indices of the labels to show, rising by place, so that any two are `gap` or more apart.
+
+    Important ones come first, then those at the ends, then the others.
+
+    >>> fitting([0.0, 1.0, 5.0, 5.5, 9.0], [False, True, False, False, False], 2.0)
+    [1, 2, 4]
+    """
+    ends = {min(places, default=0.0), max(places, default=0.0)}
+    order = sorted(range(len(places)), key=lambda k: (not important[k], places[k] not in ends, places[k]))
+    kept: list[int] = []
+    for k in order:
+        if all(abs(places[k] - places[other]) >= gap for other in kept):
+            kept.append(k)
+    return sorted(kept, key=lambda k: places[k])
+
+
+def clock_ticks(begin_s: float, end_s: float, most: int = 10) -> list[float]:
+    """Return round times of day [s] from `begin_s` to `end_s`, at most some `most` of them."""
+    width = max(end_s - begin_s, 1e-9)
+    step = next((step for step in CLOCK_STEPS_S if width / step <= most), 3600 * 24)
+    first = -int(-begin_s // step)
+    return [float(k * step) for k in range(first, int(end_s // step) + 1)]
+
+
+def clock(seconds: float, ticks: Sequence[float] = ()) -> str:
+    """Return a time of day as HH:MM, with seconds if one of `ticks` has some.
+
+    >>> clock(90000.0), clock(90015.0, [90015.0])
+    ('25:00', '25:00:15')
+    """
+    whole = round(seconds)
+    text = f"{whole // 3600:02d}:{whole // 60 % 60:02d}"
+    return f"{text}:{whole % 60:02d}" if any(round(tick) % 60 for tick in ticks) else text

@@ -1,0 +1,272 @@
+"""Theoretical journeys (PT) of a study beside its timetable (RJ): tables, key figures, and what ``run.json`` says.
+
+Krzysztozek 2019 calls the journey at a given voltage, without the network, *przejazd teoretyczny* (PT), and the
+scheduled timetable *rozklad jazdy* (RJ).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.alignment.routes import stop_distance
+from tractionpower.cosimulation.check import check_scenario
+from tractionpower.cosimulation.run import Writer
+from tractionpower.errors import Problem, UsageError, raise_errors
+from tractionpower.io.wording import did_you_mean, shown
+from tractionpower.kernels.train_tables import HOLDING, LIMITED_BY
+from tractionpower.model.base import format_time
+from tractionpower.model.limits import system_voltages
+from tractionpower.model.line import Line
+from tractionpower.model.scenario import Scenario
+from tractionpower.movement.journey import Journey, JourneyCall, theoretical_journeys
+from tractionpower.results.key_figures import KeyFigure
+from tractionpower.results.trains import CallRow, calls_table, train_figures, trains_table
+from tractionpower.results.versions import versions
+
+Form = Literal["time", "speed"]
+
+AT_END_M = 0.1
+"""A call this near to the start or the end of a run is its first or its last one [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class JourneyOutcome:
+    """Theoretical journeys of a study.
+
+    Attributes
+    ----------
+    journeys
+        One for each train, in the order of their identifiers.
+    voltage_v
+        Voltage at the pantograph [V].
+    calls
+        Rows of table ``calls`` by train.
+    key_figures
+        What ``key_figures.json`` holds.
+    run
+        What ``run.json`` says, without the files.
+    warnings
+        Warnings of the checks.
+    """
+
+    journeys: tuple[Journey, ...]
+    voltage_v: float
+    calls: dict[str, list[CallRow]] = field(default_factory=dict)
+    key_figures: list[dict[str, Any]] = field(default_factory=list)
+    run: dict[str, Any] = field(default_factory=dict)
+    warnings: tuple[Problem, ...] = ()
+
+    @property
+    def complete(self) -> bool:
+        """Whether every train reached the end of its route."""
+        return all(journey.status == "complete" for journey in self.journeys)
+
+
+def compute_journeys(
+    scenario: Scenario,
+    writer: Writer,
+    study: str = "",
+    *,
+    voltage_v: float | None = None,
+    step_s: float | None = None,
+    form: Form = "time",
+    runs: Sequence[str] | None = None,
+) -> JourneyOutcome:
+    """Compute theoretical journeys and give their tables ``trains`` and ``calls`` to a writer.
+
+    Parameters
+    ----------
+    scenario
+        The study.
+    writer
+        Takes the rows.
+    study
+        Identifier for ``run.json``.
+    voltage_v
+        Voltage at the pantograph [V]; left out: the nominal voltage of the system.
+    step_s
+        Step [s]; left out: that of the clock.
+    form
+        ``time`` integrates in time steps, ``speed`` over speed (Krzysztozek 2019, equations 3 and 4).
+    runs
+        Trains of the timetable; left out: all.
+
+    Raises
+    ------
+    InputError
+        If the study has errors; all of them are told.
+    UsageError
+        If it has no trains, or not those that are asked for.
+    """
+    started = time.perf_counter()
+    wanted = choose_runs(scenario, runs)
+    problems = check_scenario(scenario)
+    raise_errors(problems)
+    voltage = system_voltages(scenario.limits, scenario.supply.system).u_n if voltage_v is None else voltage_v
+    journeys = tuple(theoretical_journeys(scenario, voltage_v=voltage, step_s=step_s, form=form, runs=wanted))
+    calls = {journey.run.id: call_rows(journey) for journey in journeys}
+    for journey in journeys:
+        writer.append("trains", _trains_table(journey))
+    every_call = [row for rows in calls.values() for row in rows]
+    if every_call:
+        writer.append("calls", calls_table(every_call))
+    figures = [figure.as_dict() for journey in journeys for figure in _figures(journey)]
+    how = {"voltage_v": voltage, "step_s": scenario.clock.step_s if step_s is None else step_s, "form": form}
+    run = _summary(scenario, study, journeys) | {"wall_seconds": time.perf_counter() - started, **how}
+    return JourneyOutcome(journeys, voltage, calls, figures, run, tuple(problems))
+
+
+def _summary(scenario: Scenario, study: str, journeys: Sequence[Journey]) -> dict[str, Any]:
+    complete = all(journey.status == "complete" for journey in journeys)
+    return {
+        "format": 1,
+        "status": "complete" if complete else "flagged",
+        "study": study,
+        "name": scenario.name,
+        "input_hash": scenario.input_hash,
+        "seed": scenario.seed,
+        "versions": versions(),
+        "steps": sum(len(journey.rows) for journey in journeys),
+        "journeys": [_note(journey) for journey in journeys],
+    }
+
+
+def choose_runs(scenario: Scenario, named: Sequence[str] | None) -> list[str]:
+    """Return the identifiers of the trains to run, sorted.
+
+    Raises
+    ------
+    UsageError
+        If there are no trains at all, or a name is unknown.
+    """
+    known = sorted(run.id for run in scenario.timetable.trains)
+    if not known:
+        remedy = "name a timetable with trains in study.yaml; `tractionpower run` computes the network alone"
+        raise UsageError(f"the study has no trains; {remedy}")
+    unknown = [name for name in dict.fromkeys(named or ()) if name not in known]
+    if unknown:
+        parts = [f"no train {shown(name)}{_hint(name, known)}" for name in unknown]
+        raise UsageError("; ".join([*parts, f"trains of the timetable: {_listed(known)}"]))
+    return known if named is None else sorted(set(named))
+
+
+def call_rows(journey: Journey) -> list[CallRow]:
+    """Return the calls of a train as rows: one for each arrival, departure or passing that is planned or takes place.
+
+    Where the run begins there is no arrival, and where it ends no departure, unless the timetable has one.
+    """
+    return [row for call in journey.calls for row in _rows_of(journey, call)]
+
+
+def _rows_of(journey: Journey, call: JourneyCall) -> Iterator[CallRow]:
+    planned = {"arrival": _given(call.planned_arrival_s), "departure": _given(call.planned_departure_s)}
+    actual = {"arrival": float(call.arrival_s), "departure": float(call.departure_s)}
+    if call.kind == "pass":
+        times = [_first(planned["arrival"], planned["departure"]), _first(actual["arrival"], actual["departure"])]
+        yield CallRow(journey.run.id, call.station, "pass", *times)
+        return
+    at_end = call.at_m > float(journey.ceiling["from_m"][-1]) - AT_END_M
+    ways = {"arrival": call.at_m >= AT_END_M, "departure": not at_end}
+    for kind, takes_place in ways.items():
+        if takes_place or np.isfinite(planned[kind]):
+            dwell = actual["departure"] - actual["arrival"] if kind == "departure" else np.nan
+            yield CallRow(journey.run.id, call.station, kind, planned[kind], actual[kind], dwell)
+
+
+def stations_on(journey: Journey, line: Line) -> list[tuple[float, str]]:
+    """Return distance [m] and name of every station that the route passes, in its order."""
+    places = [(stop_distance(journey.path, station), station.name or station.id) for station in line.stations]
+    return sorted((place, name) for place, name in places if place is not None)
+
+
+def route_in_words(journey: Journey, line: Line) -> str:
+    """Return the route of a train: the stations at its ends, or else track and kilometre."""
+    named = {round(place): name for place, name in stations_on(journey, line)}
+    ends = []
+    for place in (0.0, float(journey.ceiling["from_m"][-1])):
+        track, km = journey.path.place(place)
+        ends.append(named.get(round(place), f"track {track}, km {km:.1f}"))
+    return " – ".join(ends)
+
+
+def seconds_of(journey: Journey) -> NDArray[np.float64]:
+    """Return how long the means of each row hold [s]; those of the last row hold for a whole step, too."""
+    time_s = journey.rows["time_s"]
+    return np.diff(time_s, append=time_s[-1] + journey.step_s)
+
+
+def end_of(journey: Journey) -> float:
+    """Return the distance of the front at the end of a journey [m]."""
+    return float(journey.ceiling["from_m"][-1]) if journey.status == "complete" else float(journey.rows["s_m"][-1])
+
+
+def why_not_complete(journey: Journey) -> str:
+    """Return in a sentence where and why a train did not reach the end of its route."""
+    last = journey.rows[-1]
+    track, km = journey.path.place(float(last["s_m"]))
+    where = f"train {journey.run.id} is {'stuck' if journey.status == 'stuck' else 'not at its end'}"
+    where += f" on track {track} at km {km:.3f}, {format_time(round(float(journey.finished_s)))}"
+    if journey.status != "stuck":
+        return f"{where}: the computation ended before its run"
+    by = LIMITED_BY[last["limited_by"]].replace("_", " ")
+    limit = "" if by == "nothing" else f", limited by {by},"
+    # A row in which it stands has no forces, and that in which it comes to a stand has those of a part of the step.
+    moving = journey.rows[journey.rows["phase"] != HOLDING][-2:]
+    before = max(moving, key=lambda row: float(row["resistance_n"]), default=last)
+    effort, resistance = float(before["traction_n"]) / 1000.0, float(before["resistance_n"]) / 1000.0
+    if resistance <= effort:  # it has not moved at all
+        return f"{where}: its tractive effort{limit} does not overcome the resistance"
+    return f"{where}: its tractive effort of {effort:.1f} kN{limit} does not overcome the resistance of {resistance:.1f} kN"
+
+
+def _note(journey: Journey) -> dict[str, Any]:
+    note = {"train": journey.run.id, "status": journey.status, "finished_s": float(journey.finished_s)}
+    return note if journey.status == "complete" else note | {"message": why_not_complete(journey)}
+
+
+def _trains_table(journey: Journey) -> Any:
+    leg, km = journey.path.places(journey.rows["s_m"])
+    names = [leg.axis.track for leg in journey.path.legs]
+    known = sorted(set(names))
+    code = np.array([known.index(name) for name in names])
+    train = (np.zeros(len(journey.rows), int), [journey.run.id])
+    return trains_table(journey.rows, train, (code[leg], known), km)
+
+
+def _figures(journey: Journey) -> Iterator[KeyFigure]:
+    whole = journey.finished_s - journey.start_s
+    stood = sum(_stood(journey, call) for call in journey.calls if call.kind == "stop")
+    return train_figures(
+        journey.run.id, journey.rows, seconds_of(journey), length_m=end_of(journey), journey_s=whole, running_s=whole - stood
+    )
+
+
+def _stood(journey: Journey, call: JourneyCall) -> float:
+    """Return how long a train stood at a call [s]; at the start of its run since it is on the line."""
+    if not np.isfinite(call.departure_s):
+        return max(0.0, journey.finished_s - call.arrival_s) if np.isfinite(call.arrival_s) else 0.0
+    arrived = call.arrival_s if np.isfinite(call.arrival_s) else journey.start_s if call.at_m < AT_END_M else call.departure_s
+    return float(call.departure_s - max(arrived, journey.start_s))
+
+
+def _given(seconds: float | None) -> float:
+    return float("nan") if seconds is None else float(seconds)
+
+
+def _first(*seconds: float) -> float:
+    return next((value for value in seconds if np.isfinite(value)), float("nan"))
+
+
+def _hint(name: str, known: Sequence[str]) -> str:
+    hint = did_you_mean(name, known)
+    return f", {hint}" if hint else ""
+
+
+def _listed(names: Sequence[str], most: int = 12) -> str:
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
