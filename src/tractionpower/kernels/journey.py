@@ -47,7 +47,7 @@ def run_journey(tables, state, k, clock, voltage, rows):
         settle(tables, state, k, (t, h), u, rows[n])
         if mover.status >= STAYING:
             return n + 1, ARRIVED, t + h
-        held = held + h if rows[n].phase == HOLDING and mover.status == RUNNING else 0.0
+        held = held + h if rows[n].phase >= HOLDING and mover.v_mps == 0.0 and mover.status == RUNNING else 0.0
         if held >= STUCK_S:
             return n + 1, STUCK, t + h
     return rows.shape[0], OUT_OF_ROWS, start + rows.shape[0] * h

@@ -167,6 +167,8 @@ def _resistance(train, track, v):
 @inlined
 def _effort(tables, train, mover, v, cap_w):
     """Return effort [N], its derivative and what limits it, below the power `cap_w` [W] at the wheel as well."""
+    if cap_w <= 0.0:
+        return 0.0, 0.0, BY_DRIVE
     effort, slope, by = greatest_effort(tables, train, mover, v)
     if effort * v > cap_w:
         effort = cap_w / v
@@ -178,20 +180,27 @@ def _effort(tables, train, mover, v, cap_w):
 def _balance(tables, train, mover, track, tau, cap_w):
     """Return effort and resistance [N] at the mean speed [m/s] that they lead to within `tau` [s], and what limits it.
 
-    The mean speed solves v_m = v + (F(v_m) - W(v_m)) tau / 2 M: the implicit midpoint rule, by Newton's method.
+    The mean speed solves v_m = v + (F(v_m) - W(v_m)) tau / 2 M: the implicit midpoint rule, by Newton's method. A small
+    power gives an effort so steep near standstill that Newton alone would jump over the solution and back for ever: a
+    step that leaves what is known to hold the solution goes to the middle of it.
     """
     v = mover.v_mps
     half = 0.5 * tau / train.inertia_kg
-    mean = v
+    mean, low, high = v, -1.0, np.inf
     effort, resistance, by = 0.0, 0.0, BY_DRIVE
     for _ in range(_NEWTON_STEPS):
         effort, slope, by = _effort(tables, train, mover, mean, cap_w)
         resistance, rise = _resistance(train, track, mean)
         gap = v + half * (effort - resistance) - mean
-        change = gap / (1.0 - half * (slope - rise))
-        mean = max(mean + change, 0.0)
-        if abs(change) <= 1e-12 * (1.0 + v):
+        if gap > 0.0:
+            low = mean
+        else:
+            high = mean
+        after = max(mean + gap / (1.0 - half * (slope - rise)), 0.0)
+        if abs(after - mean) <= 1e-12 * (1.0 + v):
+            mean = after
             break
+        mean = after if low < after < high else 0.5 * (low + high)
     return mean, effort, resistance, by
 
 

@@ -37,13 +37,15 @@ def auxiliary_current(train, u):
 def current_limit(tables, train, mover, u):
     """Return the largest current of the train at the voltage `u` [A] and what sets it.
 
-    Below the knee a U_n the train's own limit falls linearly to the current of the auxiliaries at U_min2 (shape of
-    EN 50388, figure 1); the limit of the line holds as well, and the lower one wins.
+    Below the knee a U_n the train's own limit falls linearly to the current of the auxiliaries at U_min2, where it leaves
+    nothing for traction (shape of EN 50388, figure 1); the limit of the line holds as well, and the lower one wins.
     """
     limit, by = train.max_current_a, BY_TRAIN_CURRENT
+    if u <= train.lowest_v and u < train.knee_v:
+        return 0.0, BY_VOLTAGE
     if u < train.knee_v:
         foot = auxiliary_current(train, train.lowest_v)
-        share = max((u - train.lowest_v) / (train.knee_v - train.lowest_v), 0.0)
+        share = (u - train.lowest_v) / (train.knee_v - train.lowest_v)
         limit, by = foot + (limit - foot) * share, BY_VOLTAGE
     line = line_current_limit(tables, train, mover)
     return (line, BY_LINE_CURRENT) if line < limit else (limit, by)

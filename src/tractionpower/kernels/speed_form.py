@@ -49,7 +49,7 @@ def run_over_speed(tables, state, k, clock, voltage, rows):
         now += spent
         if mover.status >= STAYING:
             return n + 1, ARRIVED, now
-        held = held + spent if rows[n].phase == HOLDING and mover.status == RUNNING else 0.0
+        held = held + spent if rows[n].phase >= HOLDING and mover.v_mps == 0.0 and mover.status == RUNNING else 0.0
         if held >= STUCK_S:
             return n + 1, STUCK, now
     return rows.shape[0], OUT_OF_ROWS, now

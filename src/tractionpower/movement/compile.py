@@ -249,7 +249,8 @@ def _line_limits(path: RoutePath) -> Any:
     rows = np.zeros(len(path.current_from_m), LINE_LIMIT)
     rows["from_m"] = path.current_from_m
     rows["max_a"] = np.minimum(path.max_current_a, NO_LIMIT)
-    rows["standstill_a"] = np.minimum(path.standstill_current_a, NO_LIMIT)
+    still = np.where(np.isfinite(path.standstill_current_a), path.standstill_current_a, path.max_current_a)
+    rows["standstill_a"] = np.minimum(still, NO_LIMIT)
     return rows
 
 

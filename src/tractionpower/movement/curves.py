@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from tractionpower.kernels.characteristics import trace
 from tractionpower.kernels.train_tables import KNOT, LINE_LIMIT, MOVER, NO_DRIVE, PIECE, STOP, TRAIN, TrainTables
 from tractionpower.kernels.wayside import GRAVITY
+from tractionpower.model.drive import SeriesMotorDrive
 from tractionpower.model.limits import Limit, system_voltages
 from tractionpower.model.vehicle import Train, Vehicle
 from tractionpower.movement.compile import knee_factor
 from tractionpower.movement.drives import NO_LIMIT, DrivePools, compile_drive, pool_arrays
 from tractionpower.movement.formation import form
+from tractionpower.movement.notches import NotchCurve, notch_curves
 
 Floats = NDArray[np.float64]
 
@@ -52,6 +54,8 @@ class TrainCurves:
         Greatest effort of the electric brake [N].
     mass_kg, length_m
         Mass with load, length.
+    notches
+        Of series motors: each notch at nominal voltage.
     """
 
     train: str
@@ -62,6 +66,7 @@ class TrainCurves:
     electric_brake_n: Floats
     mass_kg: float
     length_m: float
+    notches: tuple[NotchCurve, ...] = ()
 
 
 def drive_curves(
@@ -77,6 +82,7 @@ def drive_curves(
         between = (known.u_min2, 0.5 * (known.u_min2 + 0.9 * known.u_n), 0.9 * known.u_n, known.u_n, known.u_max1)
         voltages_v = sorted({round(volts) * 1.0 for volts in between})
     formation = form(train, {vehicle.id: vehicle for vehicle in vehicles})
+    drive = formation.driver.drive if formation.driver is not None else None
     pools = DrivePools()
     columns = compile_drive(formation, known, knee_factor(limits, system), pools)
     columns |= {"lowest_v": known.u_min2, "nominal_v": known.u_n, "inertia_kg": formation.inertia_kg}
@@ -99,6 +105,7 @@ def drive_curves(
         electric_brake_n=braking,
         mass_kg=formation.mass_kg,
         length_m=formation.length_m,
+        notches=notch_curves(drive, formation.units, known.u_n, formation.max_mps) if isinstance(drive, SeriesMotorDrive) else (),
     )
 
 

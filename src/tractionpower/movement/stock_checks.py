@@ -56,18 +56,18 @@ def _doubt(code: str, path: str, found: str, remedy: str = "") -> Problem:
     return Problem(code, path, found, remedy=remedy, severity=severity)
 
 
-def _check_rising(path: str, name: str, values: Sequence[float], *, strictly: bool) -> list[Problem]:
-    """Return a problem for each value that is not above (not below) the one before."""
+def _check_falls(path: str, name: str, values: Sequence[float]) -> list[Problem]:
+    """Return a problem for each value that is below the one before."""
     return [
         Problem(
             "non_monotone_curve",
             f"{path}[{k}].{name}",
             f"{after:g} behind {before:g}",
-            f"{'above' if strictly else 'at least'} {before:g}",
-            "put the points in order, or correct the value",
+            f"at least {before:g}",
+            "correct one of them",
         )
         for k, (before, after) in enumerate(pairwise(values), start=1)
-        if after < before or (strictly and after == before)
+        if after < before
     ]
 
 
@@ -84,8 +84,7 @@ def _check_fold_back(path: str, drive: Drive | None, voltages: SystemVoltages) -
 
 def _check_inverter(path: str, drive: InverterDrive) -> list[Problem]:
     table = f"{path}.power_over_voltage"
-    problems = _check_rising(table, "voltage_v", [point.voltage_v for point in drive.power_over_voltage], strictly=True)
-    problems += _check_rising(table, "power_kw", [point.power_kw for point in drive.power_over_voltage], strictly=False)
+    problems = _check_falls(table, "power_kw", [point.power_kw for point in drive.power_over_voltage])
     by_load: dict[float, list[float]] = defaultdict(list)
     for point in drive.efficiency_map:
         by_load[point.load_percent].append(point.speed_kmh)
@@ -111,26 +110,17 @@ def _check_series_motors(path: str, drive: SeriesMotorDrive, voltages: SystemVol
             remedy = "put the grouping with most motors in series first"
             problems.append(Problem("grouping_order", f"{path}.groupings[{k}].series", found, f"below {before.series}", remedy))
     curve = f"{path}.magnetisation"
-    problems += _check_rising(curve, "current_a", [point.current_a for point in drive.magnetisation], strictly=True)
-    problems += _check_rising(curve, "emf_vs_per_rev", [point.emf_vs_per_rev for point in drive.magnetisation], strictly=False)
-    problems += _check_field_steps(f"{path}.field_steps_percent", drive.field_steps_percent)
+    problems += _check_falls(curve, "emf_vs_per_rev", [point.emf_vs_per_rev for point in drive.magnetisation])
+    first = drive.field_steps_percent[0]
+    if first != 100.0:
+        where = f"{path}.field_steps_percent[0]"
+        problems.append(Problem("field_steps", where, f"{first:g} %", "100 %, the full field", "put 100 first"))
     most = max([drive.starting_current_a, *(g.starting_current_a or 0.0 for g in drive.groupings)])
     last = max(point.current_a for point in drive.magnetisation)
     if most > last:
         found = f"the curve ends at {last:g} A, motors take up to {most:g} A"
         problems.append(_doubt("short_curve", curve, found, "add points; beyond the last one the motors count as saturated"))
     return problems + _check_resistors(f"{path}.starting_resistors_ohm", drive, voltages.u_n)
-
-
-def _check_field_steps(path: str, steps: Sequence[float]) -> list[Problem]:
-    problems = []
-    if steps[0] != 100.0:
-        problems.append(Problem("field_steps", f"{path}[0]", f"{steps[0]:g} %", "100 %, the full field", "put 100 first"))
-    for k, (before, after) in enumerate(pairwise(steps), start=1):
-        if not 0.0 < after < before:
-            found, allowed = f"{after:g} % behind {before:g} %", f"above 0 and below {before:g} %"
-            problems.append(Problem("field_steps", f"{path}[{k}]", found, allowed, "let the steps fall"))
-    return problems
 
 
 def _check_resistors(path: str, drive: SeriesMotorDrive, nominal_v: float) -> list[Problem]:

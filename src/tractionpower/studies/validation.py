@@ -1,7 +1,8 @@
 """Reference cases: studies with expected figures, their tolerance and their source.
 
 A case is a folder with a study and a ``case.yaml`` that lists checks. A check may change inputs first, and names the
-figures that must come out by table, device and column: ``loads.train.voltage_v``.
+figures that must come out by table, device and column: ``loads.train.voltage_v``; those of theoretical journeys by train
+and figure: ``journeys.ic.running_time_s``, in both forms of the equations of motion.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -22,6 +23,8 @@ from tractionpower.model.base import Declaration, Format, Real, Text
 from tractionpower.model.change import apply_changes
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.store import MemoryWriter
+from tractionpower.studies.journeys import Form
+from tractionpower.studies.validation_journeys import PREFIX, journey_figures
 
 CASE_FILE = "case.yaml"
 
@@ -31,9 +34,18 @@ class Check(Declaration):
 
     title: Text
     set: tuple[Text, ...] = Field(default=(), description="Changes of the study, as for --set.")
-    expect: dict[str, Real] = Field(description="Expected figures by table.device.column.")
+    voltage_v: Annotated[float, Field(gt=0)] | None = Field(
+        default=None, description="Voltage at the pantograph in journeys; left out: the nominal one."
+    )
+    forms: tuple[Form, ...] = Field(default=("time", "speed"), min_length=1, description="Forms in which journeys are computed.")
+    expect: dict[str, Real] = Field(description="Expected figures by table.device.column, or journeys.train.figure.")
     tolerance: Annotated[float, Field(gt=0)] | None = Field(default=None, description="In place of the tolerance of the case.")
     status: Text = Field(default="complete", description="Status that the run must have.")
+
+    @property
+    def about_journeys(self) -> bool:
+        """Whether theoretical journeys are computed in place of a run."""
+        return any(figure.startswith(PREFIX) for figure in self.expect)
 
 
 class Case(Declaration):
@@ -48,7 +60,7 @@ class Case(Declaration):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """An expected figure beside the computed one."""
+    """An expected figure beside the computed one; `form` is that of the equations of motion, empty without a journey."""
 
     case: str
     check: str
@@ -57,6 +69,7 @@ class Finding:
     computed: float | str
     tolerance: float
     source: str
+    form: str = ""
 
     @property
     def met(self) -> bool:
@@ -83,14 +96,19 @@ def run_case(folder: Path) -> Iterator[Finding]:
     case = read_document(folder / CASE_FILE, Case)
     base = load_scenario(folder).scenario
     for check in case.checks:
-        figures, status = _compute(apply_changes(base, check.set))
-        name = folder.name
-        tolerance = check.tolerance or case.tolerance
-        yield Finding(name, check.title, "status", check.status, status, tolerance, case.source)
-        for figure, expected in check.expect.items():
-            if figure not in figures:
-                raise InputError([_unknown(folder, figure, figures)])
-            yield Finding(name, check.title, figure, expected, figures[figure], tolerance, case.source)
+        scenario = apply_changes(base, check.set)
+        for form in check.forms if check.about_journeys else ("",):
+            yield from _find(folder, case, check, form, scenario)
+
+
+def _find(folder: Path, case: Case, check: Check, form: Form | Literal[""], scenario: Scenario) -> Iterator[Finding]:
+    figures, status = journey_figures(scenario, check.voltage_v, form) if form else _compute(scenario)
+    tolerance = check.tolerance or case.tolerance
+    yield Finding(folder.name, check.title, "status", check.status, status, tolerance, case.source, form)
+    for figure, expected in check.expect.items():
+        if figure not in figures:
+            raise InputError([_unknown(folder, figure, figures)])
+        yield Finding(folder.name, check.title, figure, expected, figures[figure], tolerance, case.source, form)
 
 
 def _compute(scenario: Scenario) -> tuple[dict[str, float], str]:
