@@ -20,7 +20,6 @@ from tractionpower.studies.journeys import (
     compute_journeys,
     end_of,
     route_in_words,
-    seconds_of,
     stations_on,
     why_not_complete,
 )
@@ -106,12 +105,6 @@ def test_a_route_in_words():
     bare = make_line(stations=[])
     assert route_in_words(make_journey(bare), bare) == "track 1, km 0.5 – track 1, km 12.0"
     assert [round(place) for place, _ in stations_on(make_journey(line), line)] == [0, 5500, 5900, 11500]
-
-
-def test_means_of_a_row_hold_until_the_next_and_those_of_the_last_for_a_step():
-    journey = make_journey(make_line())
-    few = replace(journey, rows=journey.rows[[0, 1, 4]], step_s=0.5)
-    np.testing.assert_array_equal(seconds_of(few), [1.0, 3.0, 0.5])
 
 
 # --- which trains

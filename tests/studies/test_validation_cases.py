@@ -20,7 +20,7 @@ def findings_of(folder):
 def test_check(folder, title):
     findings = [finding for finding in findings_of(folder) if finding.check == title]
     assert len(findings) > 1
-    missed = [f"{f.figure}: expected {f.expected}, computed {f.computed}" for f in findings if not f.met]
+    missed = [f"{f.figure} {f.form}: expected {f.expected}, computed {f.computed}" for f in findings if not f.met]
     assert missed == []
 
 

@@ -11,6 +11,7 @@ from tractionpower.alignment.path import compile_path
 from tractionpower.kernels.train_tables import ACCELERATING, BRAKING, BY_DRIVE, DWELLING, PIECE, TRAIN_ROW
 from tractionpower.model.line import Line
 from tractionpower.model.timetable import Leg, TrainRun
+from tractionpower.movement.ledgers import TrainLedger
 
 STATIONS = [("A", "Alfa", 0.5), ("B", "Bravo", 6.0), ("C", "Ćma Wielka", 6.4), ("D", "Delta", 12.0)]
 
@@ -55,9 +56,14 @@ class FakeJourney:
     status: str = "complete"
     start_s: float = 0.0
     finished_s: float = 0.0
-    length_m: float = 200.0
-    step_s: float = 1.0
     ceiling: Any = None
+
+    @property
+    def seconds(self) -> Any:
+        return np.diff(self.rows["time_s"], append=self.rows["time_s"][-1] + 1.0)
+
+    def ledgers(self) -> dict[str, TrainLedger]:
+        return {"mechanical": TrainLedger({"wheel": -1.0, "kinetic": 1.0}, 1e-3)}
 
 
 def make_journey(

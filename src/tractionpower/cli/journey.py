@@ -85,6 +85,9 @@ def journey(  # noqa: PLR0917 - typer makes options of them
     _show(new_console(), outcome, scenario.line, shown)
     if len(shown) < len(runs):
         tell(f"calls and figures of the first {MOST} of {len(runs)} trains; --train ID shows others, the tables hold all")
+    for name, ledger in outcome.run["ledgers"].items():
+        closes = "closes" if ledger["closes"] else "DOES NOT CLOSE"
+        tell(f"ledger {name.replace('_', ' ')} {closes}: gap at most {ledger['worst_gap_share']:.1g} (train {ledger['train']})")
     if not no_reports:
         _write_figures(outcome, scenario, folder, shown)
     for each in outcome.journeys:

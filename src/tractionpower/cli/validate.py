@@ -15,7 +15,7 @@ import typer
 if TYPE_CHECKING:
     from tractionpower.studies.validation import Finding
 
-WIDTH = 110
+WIDTH = 120
 """Columns of a table at least; narrower terminals wrap [characters]."""
 
 
@@ -50,8 +50,8 @@ def _show(case: str, findings: list[Finding]) -> None:
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False)
-    for heading in ("check", "figure"):
-        table.add_column(heading, overflow="fold")
+    table.add_column("check", overflow="fold")
+    table.add_column("figure", no_wrap=True)
     for heading in ("expected", "computed", "tolerance"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from tractionpower.kernels.effort import look_up
 from tractionpower.kernels.jit import inlined
 from tractionpower.kernels.series_motors import at_full, at_part
@@ -18,7 +16,8 @@ from tractionpower.kernels.train_tables import (
 )
 from tractionpower.kernels.wayside import line_current_limit
 
-NONE = np.inf
+_FULL = 1e-9
+"""A wish this near to the greatest power is that."""
 
 
 @inlined
@@ -87,18 +86,18 @@ def traction(tables, train, mover, need_w, u, mean_speeds):
     if train.drive == SERIES_MOTORS:
         notch = tables.notches[train.first_notch + mover.notch]
         current, most, resistor = at_full(tables, notch, u, mean_speeds)
-        if need_w < most:
+        if need_w < most * (1.0 - _FULL):
             current, resistor = at_part(tables, train, mover.notch, u, need_w, mean_speeds)
         else:
-            power = most
+            power = min(most, need_w)
             if current <= free:
                 by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
     elif train.drive == TABLE:
         current, most = _table_at(tables, train, u, mean_speeds)
-        if need_w < most:
+        if need_w < most * (1.0 - _FULL):
             current *= need_w / most
         else:
-            power = most
+            power = min(most, need_w)
             if current <= free:
                 by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
     if current > free:  # the drive takes turns with off
@@ -193,6 +192,8 @@ def write_row(train, tally, row, spent, u, taken):
     row.braking_resistor_w = heated
     row.refused_w = refused
     row.returned_w = returned
+    row.recovered_w = gained - refused if train.regenerates else 0.0
+    row.brake_w = tally.brake_j / spent
     row.wheel_w = tally.traction_j / spent
     row.drive_loss_w = traction_w - resistor_w - row.wheel_w
     row.traction_n = tally.traction_ns / spent

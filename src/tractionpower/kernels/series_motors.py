@@ -11,6 +11,7 @@ from __future__ import annotations
 from tractionpower.kernels.jit import njit
 
 _BETTER = 1.02
+_MUCH_BETTER = 1.25
 _ENOUGH = 1.05
 
 
@@ -64,8 +65,9 @@ def _can_be_held(tables, notch, v, u):
 def choose_notch(tables, train, mover, t):
     """Return the notch for the greatest effort at the speed and the last voltage of `mover`.
 
-    A notch is left when another gives 2 % more effort, and not before the least time per notch is over, unless its
-    motor current would pass the set one.
+    A notch is left for a higher one that gives 2 % more effort, for a lower one only if that gives a quarter more, so
+    that groupings do not alternate; and not before the least time per notch is over, unless its motor current would
+    pass the set one.
     """
     v, u = mover.v_mps, mover.voltage_v
     first = train.first_notch
@@ -74,14 +76,15 @@ def choose_notch(tables, train, mover, t):
     if can and t - mover.notch_since_s < train.notch_s:
         return held
     best, most = 0, -1.0
+    if can:
+        best, most = held, _effort_at(tables, tables.notches[first + held], u, v)
+    staying = most
     for n in range(train.notches):
         notch = tables.notches[first + n]
-        if _can_be_held(tables, notch, v, u):
+        if n != held and _can_be_held(tables, notch, v, u):
             effort = _effort_at(tables, notch, u, v)
-            if effort > most * (1.0 if n == held else _BETTER):
+            if effort > _BETTER * most and (n > held or effort > _MUCH_BETTER * staying):
                 best, most = n, effort
-    if can and most < _BETTER * _effort_at(tables, tables.notches[first + held], u, v):
-        return held
     return best
 
 

@@ -12,9 +12,9 @@ from tractionpower.kernels.motion import run_step
 from tractionpower.kernels.pantograph import traction, write_row
 from tractionpower.kernels.series_motors import at_full, choose_notch, lowest_notch
 from tractionpower.kernels.train_tables import DWELLING, INVERTER, OUTSIDE, SERIES_MOTORS, STANDING, WAITING
-from tractionpower.kernels.wayside import additional_resistance
 
 _SAME = 1e-12
+_FULL = 1e-9
 _MATCH = 1e-10
 _MOST_TRIES = 60
 
@@ -36,22 +36,26 @@ def wish(tables, state, k, t, h):
     trial.notch = best
     run_step(tables, train, trial, state.wishes[k], (t, h), np.inf, called)
     need_w = state.wishes[k].line_j / h
-    if need_w > 0.0 and not trial.relay_open:
-        speeds = mean_speeds(tables, train, mover, h)
+    is_full = state.wishes[k].wished_ns >= train.start_n * h * (1.0 - _FULL)
+    if need_w > 0.0 and not (is_full or trial.relay_open):
+        speeds = mean_speeds(train, mover, state.wishes[k], h)
         _, most, _ = at_full(tables, tables.notches[train.first_notch + best], mover.voltage_v, speeds)
         if need_w < most:
             trial.notch = lowest_notch(tables, train, mover, best, need_w, speeds)
-    if trial.notch != mover.notch:
+    if need_w == 0.0:  # the controller goes back to its first position
+        trial.notch, trial.notch_since_s = 0, -np.inf
+    elif trial.notch != mover.notch:
         trial.notch_since_s = t
 
 
 @inlined
-def mean_speeds(tables, train, mover, h):
-    """Return what the mean speed of a step follows from: speed [m/s], half of step over inertia [s/kg], resistance [N]."""
-    v = mover.v_mps
-    constant, drag = additional_resistance(tables, train, mover, mover.s_m + 0.5 * v * h)
-    resistance = train.a_n + constant + (train.b_ns_per_m + (train.c_ns2_per_m2 + drag) * v) * v
-    return v, 0.5 * h / train.inertia_kg, resistance
+def mean_speeds(train, mover, tally, h):
+    """Return what the mean speed of a step follows from: speed [m/s], half of step over inertia [s/kg], resistance [N].
+
+    The resistance is that of the trial, whose effort differs from the one permitted by what the voltage takes away.
+    """
+    resistance = tally.resistance_j / tally.moved_m if tally.moved_m > 0.0 else 0.0
+    return mover.v_mps, 0.5 * h / train.inertia_kg, resistance
 
 
 @inlined
@@ -78,7 +82,7 @@ def settle(tables, state, k, clock, u, row):
     need_w = wished.line_j / h
     speeds = (0.0, 0.0, 0.0)
     if train.drive > INVERTER and need_w > 0.0:
-        speeds = mean_speeds(tables, train, mover, h)
+        speeds = mean_speeds(train, mover, wished, h)
     got_w, current, resistor_w, by = traction(tables, train, trial, need_w, u, speeds)
     row.time_s, row.s_m, row.v_mps = t, mover.s_m, mover.v_mps
     limited_by = wished.limited_by
@@ -90,6 +94,8 @@ def settle(tables, state, k, clock, u, row):
     v = mover.v_mps
     state.movers[k] = trial
     mover.voltage_v = u
+    if train.drive == SERIES_MOTORS and done.traction_j == 0.0:  # motors that were off start in the first grouping
+        mover.notch, mover.notch_since_s = 0, -np.inf
     write_row(train, done, row, h, u, (u * current, resistor_w))
     row.wished_n = wished.wished_ns / h
     row.acceleration_mps2 = (mover.v_mps - v) / h

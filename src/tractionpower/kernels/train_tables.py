@@ -206,6 +206,8 @@ TRAIN_ROW = np.dtype(
         ("drive_loss_w", "f8"),  # between line and wheel, starting resistors apart
         ("wheel_w", "f8"),  # tractive power at the wheel
         ("returned_w", "f8"),  # fed back into the line
+        ("recovered_w", "f8"),  # of braking, used on the train or fed back
+        ("brake_w", "f8"),  # power of all brakes at the wheel
     ]
 )
 """A step of a train: time, place, speed, phase at its start; means over the step of all else."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer, WithJsonSchema
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 FORMAT = 1
@@ -18,6 +18,20 @@ class Declaration(BaseModel):
     """A frozen declaration; unknown keys are errors and no value is converted silently."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, populate_by_name=True)
+
+    @model_validator(mode="after")
+    def _has_one_zero(self) -> Self:
+        # -0.0 == 0.0, so a field with that default is left out on saving; but as JSON they differ, and so would the hashes.
+        # Here and not in `Real`: pydantic would forget the bounds of optional fields in the JSON schema.
+        values = self.__dict__
+        for name, value in values.items():
+            if value == 0.0 and type(value) is float:
+                values[name] = 0.0
+            elif type(value) is tuple and value and type(value[0]) is float:
+                values[name] = tuple(item + 0.0 for item in value)
+            elif type(value) is dict:
+                values[name] = {key: item + 0.0 if type(item) is float else item for key, item in value.items()}
+        return self
 
 
 def _identifier(value: Any) -> Any:

@@ -16,6 +16,8 @@ from tractionpower.kernels.train_tables import POINT, TRAIN_ROW, TrainState, new
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.timetable import TrainRun
 from tractionpower.movement.compile import Movement, PlannedRun, compile_trains
+from tractionpower.movement.formation import Formation
+from tractionpower.movement.ledgers import TrainLedger, mechanical_ledger, pantograph_ledger
 
 Form = Literal["time", "speed"]
 Status = Literal["complete", "stuck", "unfinished"]
@@ -58,8 +60,10 @@ class Journey:
         complete; stuck: it cannot go on; unfinished: it takes longer than two days.
     start_s, finished_s
         Start, and end of the last row with the train on the line [s after midnight].
-    length_m, step_s
-        Length of the train [m], step [s].
+    formation
+        The train as one mass.
+    end_s, end_m, end_mps
+        Time, place and speed of the front at the end of the last row [s, m, m/s].
     ceiling
         Its speed ceiling, records of `PIECE`.
     """
@@ -71,9 +75,22 @@ class Journey:
     status: Status
     start_s: float
     finished_s: float
-    length_m: float
-    step_s: float
+    formation: Formation
+    end_s: float
+    end_m: float
+    end_mps: float
     ceiling: NDArray[np.void]
+
+    @property
+    def seconds(self) -> NDArray[np.float64]:
+        """Time for which each row holds [s]."""
+        return np.diff(self.rows["time_s"], append=self.end_s)
+
+    def ledgers(self) -> dict[str, TrainLedger]:
+        """Return the mechanical ledger and that from pantograph to wheel."""
+        end = (self.end_m, self.end_mps)
+        mechanical = mechanical_ledger(self.rows, self.seconds, end, self.formation, self.path)
+        return {"mechanical": mechanical, "pantograph_to_wheel": pantograph_ledger(self.rows, self.seconds)}
 
 
 def theoretical_journeys(
@@ -126,8 +143,10 @@ def _run(movement: Movement, state: TrainState, k: int, voltage: NDArray[np.void
         status=_STATUS[end],
         start_s=planned.start_s,
         finished_s=float(state.movers[k]["finished_s"]) if end == ARRIVED else start,
-        length_m=planned.formation.length_m,
-        step_s=step,
+        formation=planned.formation,
+        end_s=start,
+        end_m=float(state.movers[k]["s_m"]),
+        end_mps=float(state.movers[k]["v_mps"]),
         ceiling=pieces,
     )
 

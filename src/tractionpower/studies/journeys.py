@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tractionpower.alignment.routes import stop_distance
 from tractionpower.cosimulation.check import check_scenario
@@ -64,8 +63,8 @@ class JourneyOutcome:
 
     @property
     def complete(self) -> bool:
-        """Whether every train reached the end of its route."""
-        return all(journey.status == "complete" for journey in self.journeys)
+        """Whether every train reached the end of its route, and every ledger closes."""
+        return bool(self.run["status"] == "complete")
 
 
 def compute_journeys(
@@ -123,7 +122,9 @@ def compute_journeys(
 
 
 def _summary(scenario: Scenario, study: str, journeys: Sequence[Journey]) -> dict[str, Any]:
+    ledgers = _ledgers(journeys)
     complete = all(journey.status == "complete" for journey in journeys)
+    complete = complete and all(ledger["closes"] for ledger in ledgers.values())
     return {
         "format": 1,
         "status": "complete" if complete else "flagged",
@@ -133,8 +134,23 @@ def _summary(scenario: Scenario, study: str, journeys: Sequence[Journey]) -> dic
         "seed": scenario.seed,
         "versions": versions(),
         "steps": sum(len(journey.rows) for journey in journeys),
+        "ledgers": ledgers,
         "journeys": [_note(journey) for journey in journeys],
     }
+
+
+def _ledgers(journeys: Sequence[Journey]) -> dict[str, dict[str, Any]]:
+    """Return for each kind of ledger whether it closes for every train, and the train with the greatest gap."""
+    found: dict[str, dict[str, Any]] = {}
+    for journey in journeys:
+        for name, ledger in journey.ledgers().items():
+            entry = found.setdefault(name, {"closes": True, "worst_gap_share": -1.0, "train": ""})
+            entry["closes"] = entry["closes"] and ledger.closes
+            if ledger.gap_share > entry["worst_gap_share"]:
+                entry |= {"worst_gap_share": ledger.gap_share, "train": journey.run.id}
+            for part, joule in ledger.energy_j.items():
+                entry[f"{part}_kwh"] = entry.get(f"{part}_kwh", 0.0) + abs(joule) / 3.6e6
+    return found
 
 
 def choose_runs(scenario: Scenario, named: Sequence[str] | None) -> list[str]:
@@ -195,12 +211,6 @@ def route_in_words(journey: Journey, line: Line) -> str:
     return " – ".join(ends)
 
 
-def seconds_of(journey: Journey) -> NDArray[np.float64]:
-    """Return how long the means of each row hold [s]; those of the last row hold for a whole step, too."""
-    time_s = journey.rows["time_s"]
-    return np.diff(time_s, append=time_s[-1] + journey.step_s)
-
-
 def end_of(journey: Journey) -> float:
     """Return the distance of the front at the end of a journey [m]."""
     return float(journey.ceiling["from_m"][-1]) if journey.status == "complete" else float(journey.rows["s_m"][-1])
@@ -243,7 +253,7 @@ def _figures(journey: Journey) -> Iterator[KeyFigure]:
     whole = journey.finished_s - journey.start_s
     stood = sum(_stood(journey, call) for call in journey.calls if call.kind == "stop")
     return train_figures(
-        journey.run.id, journey.rows, seconds_of(journey), length_m=end_of(journey), journey_s=whole, running_s=whole - stood
+        journey.run.id, journey.rows, journey.seconds, length_m=end_of(journey), journey_s=whole, running_s=whole - stood
     )
 
 

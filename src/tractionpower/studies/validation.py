@@ -43,9 +43,9 @@ class Check(Declaration):
     status: Text = Field(default="complete", description="Status that the run must have.")
 
     @property
-    def about_journeys(self) -> bool:
-        """Whether theoretical journeys are computed in place of a run."""
-        return any(figure.startswith(PREFIX) for figure in self.expect)
+    def passes(self) -> tuple[Form | Literal[""], ...]:
+        """Forms in which theoretical journeys are computed; a single empty one for a run in their place."""
+        return self.forms if any(figure.startswith(PREFIX) for figure in self.expect) else ("",)
 
 
 class Case(Declaration):
@@ -97,7 +97,7 @@ def run_case(folder: Path) -> Iterator[Finding]:
     base = load_scenario(folder).scenario
     for check in case.checks:
         scenario = apply_changes(base, check.set)
-        for form in check.forms if check.about_journeys else ("",):
+        for form in check.passes:
             yield from _find(folder, case, check, form, scenario)
 
 

@@ -10,7 +10,7 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.movement.journey import Journey
 from tractionpower.results.store import MemoryWriter
 from tractionpower.results.trains import J_PER_KWH, KMH_PER_MPS
-from tractionpower.studies.journeys import Form, compute_journeys, end_of, seconds_of
+from tractionpower.studies.journeys import Form, compute_journeys, end_of
 
 PREFIX = "journeys."
 """How the names of these figures begin."""
@@ -56,14 +56,14 @@ def journey_figures(scenario: Scenario, voltage_v: float | None, form: Form) -> 
 
 
 def _figures(journey: Journey) -> Iterator[tuple[str, float]]:
-    rows, seconds = journey.rows, seconds_of(journey)
+    rows, seconds = journey.rows, journey.seconds
     energies = {name: float(rows[field] @ seconds) / J_PER_KWH for name, field in ENERGIES.items()}
     yield from energies.items()
     traction = sum(energies[name] for name in ("wheel_kwh", "drive_loss_kwh", "starting_resistor_kwh"))
     yield "starting_resistor_share", energies["starting_resistor_kwh"] / traction if traction > 0.0 else 0.0
     yield "distance_m", end_of(journey)
     yield "greatest_effort_kn", float(rows["traction_n"].max()) / 1000.0
-    yield "end_speed_kmh", float(rows["v_mps"][-1] + rows["acceleration_mps2"][-1] * seconds[-1]) * KMH_PER_MPS
+    yield "end_speed_kmh", journey.end_mps * KMH_PER_MPS
     for call in journey.calls:
         if np.isfinite(call.arrival_s):
             yield f"at_{call.station}_s", call.arrival_s - journey.start_s

@@ -1,0 +1,121 @@
+"""The two ledgers of a train that must close: work at the wheel against motion, energy from the line against that work."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.alignment.path import RoutePath
+from tractionpower.kernels.wayside import GRAVITY
+from tractionpower.movement.formation import Formation
+
+Floats = NDArray[np.float64]
+
+MECHANICAL_SHARE = 1e-3
+"""The mechanical ledger closes within this share of what is exchanged."""
+
+ELECTRIC_SHARE = 1e-6
+"""The ledger from pantograph to wheel closes within this share."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrainLedger:
+    """Energies by name [J], positive where the train spends them, and whether their sum is nothing.
+
+    The gap is the sum; its share is that of half of the absolute values.
+    """
+
+    energy_j: dict[str, float]
+    allowed_share: float
+
+    @property
+    def gap_j(self) -> float:
+        """What does not add up [J]."""
+        return sum(self.energy_j.values())
+
+    @property
+    def gap_share(self) -> float:
+        """The gap over what is exchanged."""
+        gross = 0.5 * sum(map(abs, self.energy_j.values()))
+        return abs(self.gap_j) / gross if gross > 0.0 else 0.0
+
+    @property
+    def closes(self) -> bool:
+        """Whether the gap is within what is allowed."""
+        return self.gap_share <= self.allowed_share
+
+
+def mechanical_ledger(
+    rows: NDArray[np.void], seconds: Floats, end: tuple[float, float], mass: Formation, path: RoutePath
+) -> TrainLedger:
+    """Return work at the wheel against kinetic and potential energy, resistance and brakes.
+
+    Kinetic energy counts rotating masses; potential energy is that of the mean height under the train. The work of the
+    running resistance is integrated anew from places and speeds, not from the forces of the steps.
+
+    Parameters
+    ----------
+    rows
+        Steps of the train, records of TRAIN_ROW.
+    seconds
+        Time for which each row holds [s].
+    end
+        Place [m] and speed [m/s] at the end of the last row.
+    mass, path
+        The train, and its route.
+    """
+    s, v = np.append(rows["s_m"], end[0]), np.append(rows["v_mps"], end[1])
+    before, after = v[:-1], v[1:]
+    linear = 0.5 * (before + after)
+    square = (before**2 + before * after + after**2) / 3.0
+    cubic = 0.5 * linear * (before**2 + after**2)
+    moving = np.divide(np.diff(s), linear, out=np.zeros_like(linear), where=linear > 0.0)  # a train may stand in part of a row
+    running = mass.a_n * (s[-1] - s[0]) + moving @ (mass.b_ns_per_m * square + mass.c_ns2_per_m2 * cubic)
+    wheel, brakes = float(seconds @ rows["wheel_w"]), float(seconds @ rows["brake_w"])
+    ends, spread = s[[0, -1]], mass.spread_m
+    height = _mean_under(path, path.height_m, ends, spread)
+    (single, single_drag), (double, double_drag) = mass.tunnel
+    added = path.curve_m + single * path.single_tunnel_m + double * path.double_tunnel_m
+    curves = _mean_under(path, added, ends, spread)
+    drag = single_drag * path.single_tunnel_m + double_drag * path.double_tunnel_m
+    dragged = np.diff(_mean_under(path, drag, s, spread)) @ (0.5 * (before**2 + after**2))
+    return TrainLedger(
+        {
+            "wheel": -wheel,
+            "kinetic": 0.5 * mass.inertia_kg * float(v[-1] ** 2 - v[0] ** 2),
+            "potential": mass.mass_kg * GRAVITY * float(height[1] - height[0]),
+            "resistance": float(running + mass.mass_kg * GRAVITY * (curves[1] - curves[0]) + dragged),
+            "brakes": brakes,
+        },
+        MECHANICAL_SHARE,
+    )
+
+
+def pantograph_ledger(rows: NDArray[np.void], seconds: Floats) -> TrainLedger:
+    """Return energy from the line against work at the wheel, losses, auxiliaries, and what braking gives."""
+    named = {
+        "line": -rows["voltage_v"] * rows["current_a"],
+        "wheel": rows["wheel_w"],
+        "drive_loss": rows["drive_loss_w"],
+        "starting_resistors": rows["starting_resistor_w"],
+        "auxiliaries": rows["auxiliary_w"],
+        "recovered": -rows["recovered_w"],
+    }
+    return TrainLedger({name: float(seconds @ power) for name, power in named.items()}, ELECTRIC_SHARE)
+
+
+def _mean_under(path: RoutePath, values: Floats, s: Floats, spread_m: float) -> Floats:
+    """Return the mean under the train of what is straight between the places of `path`, the front at `s` [m]."""
+    if spread_m <= 0.0:
+        return np.interp(s, path.at_m, values)
+    return (_integral(path.at_m, values, s) - _integral(path.at_m, values, s - spread_m)) / spread_m
+
+
+def _integral(at: Floats, values: Floats, s: Floats) -> Floats:
+    """Return the integral from the first place to `s` of what is straight between places and constant beyond them."""
+    whole = np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(at))))
+    k = np.clip(np.searchsorted(at, s, side="right") - 1, 0, len(at) - 1)
+    here = np.interp(s, at, values)
+    return np.asarray(np.where(s < at[0], values[0] * (s - at[0]), whole[k] + 0.5 * (values[k] + here) * (s - at[k])))
