@@ -19,8 +19,9 @@ $(STAMP): pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
 	@touch $@
 
-demo: setup    ## the main job on a shipped line
+demo: setup    ## the main jobs on a shipped line
 	$(BIN)/tractionpower run two-substations
+	$(BIN)/tractionpower journey two-substations/trains.yaml
 
 lint: setup    ## style, types, import contract
 	$(BIN)/ruff check .

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tractionpower.model.change import apply_changes as change
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.results import Results
+    from tractionpower.studies.journeys import journeys
 
 _HOMES = {
     "InputError": ("errors", "InputError"),
@@ -28,6 +29,7 @@ _HOMES = {
     "UsageError": ("errors", "UsageError"),
     "change": ("model.change", "apply_changes"),
     "check": ("cosimulation.check", "check_scenario"),
+    "journeys": ("studies.journeys", "journeys"),
     "load": ("io.scenario_files", "load"),
     "save": ("io.scenario_files", "save_scenario"),
     "simulate": ("cosimulation.simulate", "simulate"),
@@ -43,6 +45,7 @@ __all__ = [
     "UsageError",
     "change",
     "check",
+    "journeys",
     "load",
     "save",
     "simulate",

@@ -59,3 +59,13 @@ def test_shipped_names_are_sorted_and_unique(places):
 def test_data_of_a_checkout_lie_beside_the_sources():
     assert data_folder("lines").name == "lines"
     assert data_folder("lines").is_absolute()
+
+
+def test_a_shipped_line_is_named_with_one_of_its_study_files(places):
+    (places / "package/lines/e65/trains.yaml").write_text("format: 1\n")
+    found = find_study("e65/trains.yaml")
+    assert (found.file, found.folder) == (places / "package/lines/e65/trains.yaml", places / "package/lines/e65")
+    assert "ship" in found.origin
+    for name in ("e65/none.yaml", "../e65/trains.yaml", "trains.yaml", "e65/trains"):
+        with pytest.raises(UsageError):
+            find_study(name)

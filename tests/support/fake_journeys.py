@@ -151,6 +151,7 @@ class FakeCurves:
     electric_brake_n: Any = None
     mass_kg: float = 484e3
     length_m: float = 260.0
+    notches: tuple[Any, ...] = ()
 
 
 def make_curves(voltages_v: Any = (2000.0, 2400.0, 2700.0, 3000.0, 3300.0, 3600.0)) -> FakeCurves:

@@ -36,7 +36,8 @@ class Study:
 def find_study(study: str | Path) -> Study:
     """Return the study that a user means by a path or by the name of a shipped line.
 
-    A path that exists wins over a shipped name; names are looked up in ``lines`` of the working folder, then in the package.
+    A path that exists wins over a shipped name. A shipped line is named alone, or with one of its study files, such as
+    ``two-substations/trains.yaml``. Names are looked up in ``lines`` of the working folder, then in the package.
 
     Raises
     ------
@@ -49,9 +50,9 @@ def find_study(study: str | Path) -> Study:
     if _exists(path):
         return _study_at(path)
     for folder, origin in _shipped_folders():
-        file = folder / str(study) / STUDY_FILE
-        if len(path.parts) == 1 and _exists(file):
-            return Study(file, file.parent, origin)
+        named = path if path.suffix == ".yaml" else path / STUDY_FILE
+        if len(named.parts) == 2 and ".." not in named.parts and _exists(folder / named):
+            return Study(folder / named, (folder / named).parent, origin)
     raise UsageError(_unknown(str(study)))
 
 

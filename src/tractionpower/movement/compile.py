@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from tractionpower.alignment.axis import compile_axes
+from tractionpower.alignment.axis import TrackAxis, compile_axes
 from tractionpower.alignment.path import RoutePath, compile_path
 from tractionpower.alignment.routes import stop_distance
 from tractionpower.kernels.train_tables import (
@@ -27,7 +27,7 @@ from tractionpower.kernels.wayside import GRAVITY
 from tractionpower.model.limits import Limit, SystemVoltages, find_limit, system_voltages
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import Scenario
-from tractionpower.model.timetable import Call, TrainRun
+from tractionpower.model.timetable import Call, Leg, TrainRun
 from tractionpower.model.vehicle import Train
 from tractionpower.movement.ceiling import compile_ceiling
 from tractionpower.movement.drives import NO_LIMIT, DrivePools, compile_drive, pool_arrays
@@ -124,21 +124,41 @@ def train_of(run: TrainRun, trains: Sequence[Train]) -> Train:
     return next(train for train in trains if train.id == run.train)
 
 
+class Routes:
+    """The routes of runs as paths, each compiled once for the trains of a category.
+
+    Parameters
+    ----------
+    line, axes
+        The line and its tracks.
+    behind_m
+        Length of the longest train [m], whose tail stands behind the start of its route.
+    """
+
+    def __init__(self, line: Line, axes: Mapping[str, TrackAxis], behind_m: float) -> None:
+        self._line, self._axes, self._behind_m = line, axes, behind_m
+        self._paths: dict[tuple[tuple[Leg, ...], str | None], RoutePath] = {}
+
+    def path(self, run: TrainRun, train: Train | None) -> RoutePath:
+        """Return the path of a run; its category, or else that of its train, chooses the speed limits."""
+        category = run.category if run.category is not None or train is None else train.category
+        key = (run.route, category)
+        if key not in self._paths:
+            self._paths[key] = compile_path(self._line, self._axes, run.route, category, self._behind_m)
+        return self._paths[key]
+
+
 def plan_runs(scenario: Scenario, runs: Sequence[TrainRun]) -> list[PlannedRun]:
     """Return `runs` on their routes; runs of one route and category share its path."""
     vehicles = {vehicle.id: vehicle for vehicle in scenario.vehicles}
     trains = [train_of(run, scenario.trains) for run in runs]
     formations = [form(train, vehicles) for train in trains]
     behind = max((formation.length_m for formation in formations), default=0.0)
-    axes, paths = compile_axes(scenario.line), {}
-    planned = []
-    for run, train, formation in zip(runs, trains, formations, strict=True):
-        category = run.category if run.category is not None else train.category
-        key = (run.route, category)
-        if key not in paths:
-            paths[key] = compile_path(scenario.line, axes, run.route, category, behind)
-        planned.append(plan_run(run, train, formation, paths[key], scenario.line))
-    return planned
+    routes = Routes(scenario.line, compile_axes(scenario.line), behind)
+    return [
+        plan_run(run, train, formation, routes.path(run, train), scenario.line)
+        for run, train, formation in zip(runs, trains, formations, strict=True)
+    ]
 
 
 def plan_run(run: TrainRun, train: Train, formation: Formation, path: RoutePath, line: Line) -> PlannedRun:
@@ -147,11 +167,15 @@ def plan_run(run: TrainRun, train: Train, formation: Formation, path: RoutePath,
     stops_last = bool(calls) and calls[-1].call.stops
     end = {"leave": LEAVE, "stop": STOP_THERE, "stay": STAY, None: STOP_THERE if stops_last else LEAVE}[run.end]
     route_m = calls[-1].at_m if stops_last and end != LEAVE else path.length_m
-    departure = run.calls[0].departure if run.calls else None
-    start_s = run.start.time if run.start is not None else departure
-    assert start_s is not None  # a rule of the declaration
     start_mps = run.start.speed_kmh / KMH if run.start is not None else 0.0
-    return PlannedRun(run, train, formation, path, calls, route_m, end, start_s, start_mps)
+    return PlannedRun(run, train, formation, path, calls, route_m, end, start_time(run), start_mps)
+
+
+def start_time(run: TrainRun) -> float:
+    """Return when a run begins [s]."""
+    start_s = run.start.time if run.start is not None else run.calls[0].departure
+    assert start_s is not None  # a rule of the declaration
+    return start_s
 
 
 def place_calls(run: TrainRun, path: RoutePath, line: Line) -> tuple[PlannedCall, ...]:

@@ -117,16 +117,14 @@ def _check_resistors(path: str, drive: SeriesMotorDrive, voltages: SystemVoltage
         return []
     count = len(drive.groupings)
     exists = {"series": True, "series_parallel": count > 2, "parallel": count > 1}
+    named = [name for name, is_there in exists.items() if is_there]
     problems: list[Problem] = []
-    for name in exists:
+    for name, is_there in exists.items():
         notches: tuple[float, ...] = getattr(given, name)
-        if notches and not exists[name]:
-            found, names = (
-                f"{len(notches)} notches of a grouping that does not exist",
-                " and ".join(n for n in exists if exists[n]),
-            )
+        if notches and not is_there:
+            found = f"{len(notches)} notch{'es' * (len(notches) > 1)} of a grouping that does not exist"
             remedy = "leave them out, or add the grouping"
-            problems.append(Problem("starting_resistors", f"{path}.{name}", found, f"notches of {names}", remedy))
+            problems.append(Problem("starting_resistors", f"{path}.{name}", found, f"only {' and '.join(named)}", remedy))
         elif notches:
             problems += _check_notches(f"{path}.{name}", notches)
     if given.series and voltages is not None:

@@ -91,6 +91,7 @@ def curves_figure(curves: TrainCurves, title: str) -> Figure:
             lower.plot(kmh, curve.current_a, label=f"{curve.voltage_v:g} V", **style)
         top = ROOM * max(float(np.nanmax(curve.effort_n)) for curve in curves.curves) / 1000.0
         top = max(top, ROOM * float(curves.electric_brake_n.max()) / 1000.0, 1.0)
+        _draw_notches(upper, curves)
         _draw_limits(upper, curves, top)
         _draw_resistances(upper, curves, top)
         upper.set_ylim(0.0, top)
@@ -102,6 +103,14 @@ def curves_figure(curves: TrainCurves, title: str) -> Figure:
             axes.legend(loc="upper left", bbox_to_anchor=(1.06, 1.0), fontsize=8, handlelength=3.0)
         figure.suptitle(title, x=0.01, ha="left", fontsize=11)
         return figure
+
+
+def _draw_notches(axes: Axes, curves: TrainCurves) -> None:
+    """Draw the single notches of series motors behind all else."""
+    for number, notch in enumerate(curves.notches):
+        label = "single notches at nominal voltage" if number == 0 else None
+        kmh, kn = 3.6 * notch.speed_mps, notch.effort_n / 1000.0
+        axes.plot(kmh, kn, color=INK, linewidth=0.4, alpha=0.45, zorder=1.0, label=label)
 
 
 def _draw_limits(axes: Axes, curves: TrainCurves, top: float) -> None:

@@ -25,6 +25,8 @@ from tractionpower.model.line import Line
 from tractionpower.model.scenario import Scenario
 from tractionpower.movement.journey import Journey, JourneyCall, theoretical_journeys
 from tractionpower.results.key_figures import KeyFigure
+from tractionpower.results.results import Results
+from tractionpower.results.store import MemoryWriter
 from tractionpower.results.trains import CallRow, calls_table, train_figures, trains_table
 from tractionpower.results.versions import versions
 
@@ -119,6 +121,21 @@ def compute_journeys(
     how = {"voltage_v": voltage, "step_s": scenario.clock.step_s if step_s is None else step_s, "form": form}
     run = _summary(scenario, study, journeys) | {"wall_seconds": time.perf_counter() - started, **how}
     return JourneyOutcome(journeys, voltage, calls, figures, run, tuple(problems))
+
+
+def journeys(scenario: Scenario, **options: Any) -> Results:
+    """Return the theoretical journeys of a study as results in memory; options as for `compute_journeys`.
+
+    Raises
+    ------
+    InputError
+        If the study has errors; all of them are told.
+    UsageError
+        If it has no trains, or not those that are asked for.
+    """
+    writer = MemoryWriter()
+    outcome = compute_journeys(scenario, writer, **options)
+    return Results(outcome.run, outcome.key_figures, writer.tables())
 
 
 def _summary(scenario: Scenario, study: str, journeys: Sequence[Journey]) -> dict[str, Any]:

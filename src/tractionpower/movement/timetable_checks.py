@@ -1,0 +1,60 @@
+"""Checks of the times of a run: what goes backwards, what is too short, what never begins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from tractionpower.errors import Problem
+from tractionpower.model.base import format_time
+from tractionpower.model.scenario import Clock
+from tractionpower.model.timetable import Call, TrainRun
+from tractionpower.movement.compile import start_time
+from tractionpower.movement.telling import doubt, listed
+
+DAY_S = 86_400.0
+
+
+def check_times(path: str, run: TrainRun) -> Iterator[Problem]:
+    """Yield times of a run that go backwards, and departures before the shortest dwell is over."""
+    last, where = (run.start.time, "of the start") if run.start is not None else (None, "")
+    for k, call in enumerate(run.calls):
+        for name in ("arrival", "departure"):
+            time = getattr(call, name)
+            if time is None:
+                continue
+            if last is not None and time < last:
+                yield _backwards(f"{path}.calls[{k}].{name}", time, last, where)
+            else:  # later times are held against the last one that is in order, so that one slip is told once
+                last, where = time, f"{'of the ' if call.stops else 'of passing, '}{name} at {call.station}"
+        yield from _check_dwell(f"{path}.calls[{k}]", call)
+
+
+def _backwards(path: str, time: float, last: float, where: str) -> Problem:
+    remedy = "correct one of them"
+    if last - time > 0.5 * DAY_S:
+        remedy = f"times of the next day go on beyond 24:00:00: write {format_time(time + DAY_S)}"
+    found = f"{format_time(time)}, before {format_time(last)} {where}"
+    return Problem("times_backwards", path, found, f"from {format_time(last)} on", remedy)
+
+
+def _check_dwell(path: str, call: Call) -> Iterator[Problem]:
+    if not call.stops and call.min_dwell_s > 0.0:
+        found = f"{call.min_dwell_s:g} s at a station that the train passes"
+        yield Problem("dwell_of_passing", f"{path}.min_dwell_s", found, "0", "leave it out, or let the train stop there")
+    elif call.arrival is not None and call.departure is not None and 0.0 <= call.departure - call.arrival < call.min_dwell_s:
+        found = f"{call.departure - call.arrival:g} s planned, min_dwell_s is {call.min_dwell_s:g} s: the train leaves late"
+        remedy = "let it depart later, or shorten min_dwell_s"
+        yield doubt("short_dwell", f"{path}.departure", found, remedy=remedy)
+
+
+def check_clock(paths: Sequence[str], runs: Sequence[TrainRun], clock: Clock) -> list[Problem]:
+    """Return one warning for all runs that begin when the simulated time is over."""
+    late = [(path, run) for path, run in zip(paths, runs, strict=True) if start_time(run) >= clock.end]
+    if not late:
+        return []
+    path, first = late[0]
+    where = f"{path}.start.time" if first.start is not None else f"{path}.calls[0].departure"
+    found = f"begins at {format_time(start_time(first))}, the clock ends at {format_time(clock.end)}: it does not run"
+    if len(late) > 1:
+        found += f"; nor do {listed(sorted(run.id for _, run in late[1:]))}"
+    return [doubt("begins_after_end", where, found, remedy="let the clock end later, or leave it out")]
