@@ -1,4 +1,4 @@
-"""Measure how fast tractionpower is: its solver, beside general programs, and its start. Entry of ``make bench``."""
+"""Measure how fast tractionpower is: its solver, its trains, beside general programs, and its start. Entry of ``make bench``."""
 
 from __future__ import annotations
 
@@ -10,11 +10,16 @@ import peers
 import report
 import solver
 import startup
+import train
 
 
 def _solver(quick: bool) -> str:
     steps, rounds = (300, 5) if quick else (1200, 25)
     return solver.describe(solver.measure(steps, rounds), steps)
+
+
+def _train(quick: bool) -> str:
+    return train.describe(train.measure(9 if quick else 45))
 
 
 def _peers(quick: bool) -> str:
@@ -25,7 +30,7 @@ def _startup(quick: bool) -> str:
     return startup.describe(startup.measure(3 if quick else 9))
 
 
-PARTS: dict[str, Callable[[bool], str]] = {"solver": _solver, "peers": _peers, "startup": _startup}
+PARTS: dict[str, Callable[[bool], str]] = {"solver": _solver, "train": _train, "peers": _peers, "startup": _startup}
 
 
 def main() -> int:

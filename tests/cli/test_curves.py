@@ -77,6 +77,39 @@ def test_a_broken_file_is_told_with_its_line(study, capsys):
     assert "railcar.yaml:4" in capsys.readouterr().err
 
 
+RAILCAR = "rollingstock/vehicles/railcar.yaml"
+
+
+def edit(file, *changes):
+    text = file.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    file.write_text(text, encoding="utf-8")
+
+
+def test_all_faults_of_a_train_are_told_and_nothing_is_drawn(tmp_path, study, capsys):
+    maps = (
+        "efficiency_map: [{speed_kmh: 0, load_percent: 50, efficiency: 0.8}, {speed_kmh: 9, load_percent: 99, efficiency: 0.8}]"
+    )
+    edit(study / RAILCAR, ("efficiency: 0.85", f"{maps}, fold_back_from_v: 4000"), ("a_n: 2000, c_n_per_kmh2: 0.5", ""))
+    assert main(["curves", "six/rollingstock/trains/local.yaml"]) == 1
+    told = capsys.readouterr().err
+    assert told.count("error: ") == 3
+    assert "vehicles[railcar].drive.efficiency_map: found the load of 50 % has no point at 9 km/h" in told
+    assert "vehicles[railcar].drive.fold_back_from_v: found feeding back is reduced from 4000 V" in told
+    assert "warning: six/rollingstock/trains/local.yaml: vehicles[railcar].resistance: " in told
+    assert "3 errors, 1 warning" in told
+    assert not (tmp_path / "reports").exists()
+
+
+def test_doubts_are_told_and_the_curves_drawn(tmp_path, study, capsys):
+    edit(study / RAILCAR, ("max_current_a: 600", "max_current_a: 15"))
+    assert main(["curves", f"six/{RAILCAR}"]) == 0
+    assert "the auxiliaries of the train take 17 A at 3000 V" in capsys.readouterr().err
+    assert (tmp_path / "reports" / "curves" / "railcar.png").is_file()
+
+
 def test_a_folder_that_cannot_be_made(tmp_path, capsys):
     (tmp_path / "reports").write_text("in the way", encoding="utf-8")
     assert main(["curves", "vectron-dc"]) == 3

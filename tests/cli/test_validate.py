@@ -42,7 +42,7 @@ def test_json_lists_every_finding(cases, capsys):
     findings = json.loads(capsys.readouterr().out)
     assert len(findings) > 8
     assert all(finding["met"] is True for finding in findings)
-    assert set(findings[0]) == {"case", "check", "figure", "expected", "computed", "tolerance", "source", "met"}
+    assert set(findings[0]) == {"case", "check", "figure", "expected", "computed", "tolerance", "source", "form", "met"}
 
 
 def test_a_wrong_expectation_is_missed_and_3(cases, capsys):

@@ -11,6 +11,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from tractionpower.model.limits import SystemVoltages
+    from tractionpower.model.vehicle import Train, Vehicle
     from tractionpower.movement.curves import TrainCurves
 
 
@@ -41,10 +45,11 @@ def curves(
         if not (math.isfinite(value) and 1.0 <= value <= 100_000.0):
             raise UsageError(f"--voltage {value:g}: allowed are 1 to 100000 V")
     declared, vehicles = load_train(train)
+    voltages = system_voltages(limits, system)
+    _check(train, declared, vehicles, voltages)
     chosen = sorted(set(voltage)) if voltage else None
     drawn = drive_curves(declared, vehicles, limits, system, chosen)
-    nominal_v = system_voltages(limits, system).u_n
-    at_nominal = drive_curves(declared, vehicles, limits, system, [nominal_v])
+    at_nominal = drive_curves(declared, vehicles, limits, system, [voltages.u_n])
     _show(declared.name or declared.id, at_nominal, drawn)
     folder = out if out is not None else Path("reports") / "curves"
     figure = folder / png_names([declared.id])[declared.id]
@@ -54,6 +59,21 @@ def curves(
     except OSError as error:
         raise OutputError(f"curves cannot be written into {folder}: {error}") from error
     tell("results: " + ", ".join(str(path) for path in paths))
+
+
+def _check(argument: str, train: Train, vehicles: Sequence[Vehicle], voltages: SystemVoltages) -> None:
+    """Tell what is doubtful with a train and its vehicles, and raise what is wrong, all of it at once."""
+    from dataclasses import replace
+
+    from tractionpower.cli.messages import tell_problems
+    from tractionpower.errors import raise_errors
+    from tractionpower.movement.stock_checks import check_train, check_vehicle
+
+    problems = [problem for vehicle in vehicles for problem in check_vehicle(vehicle, voltages)]
+    problems += check_train(f"trains[{train.id}].vehicles", train.vehicles, {item.id: item for item in vehicles}, voltages)
+    problems = [replace(problem, place=argument) for problem in problems]
+    raise_errors(problems)
+    tell_problems(problems)
 
 
 def _show(name: str, nominal: TrainCurves, drawn: TrainCurves) -> None:

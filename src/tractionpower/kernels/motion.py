@@ -20,12 +20,14 @@ from tractionpower.kernels.train_tables import (
     BY_DRIVE,
     BY_NOTHING,
     BY_SPEED,
+    COASTING,
     CRUISING,
     DWELLING,
     GONE,
     HOLDING,
     INVERTER,
     LEAVE,
+    NO_DRIVE,
     OUTSIDE,
     RUNNING,
     STANDING,
@@ -43,6 +45,7 @@ HERE_M = 1e-6
 
 _ON_CEILING = 1e-10
 _MOST_PHASES = 200
+_CUTS = 6
 _NEWTON_STEPS = 30
 
 
@@ -152,8 +155,7 @@ def _run(tables, train, mover, tally, time, cap_w, called):
     w = mover.v_mps * mover.v_mps
     if w < ceiling - _ON_CEILING * (1.0 + ceiling) or mover.v_mps == 0.0:
         now, left = time
-        middle = mover.s_m + 0.5 * mover.v_mps * left
-        return _accelerate(tables, train, mover, tally, (now, left, middle, True), cap_w, called)
+        return _accelerate(tables, train, mover, tally, (now, left, mover.v_mps * left, True), cap_w, called)
     return _follow(tables, train, mover, tally, time, cap_w, called)
 
 
@@ -208,24 +210,30 @@ def _balance(tables, train, mover, track, tau, cap_w):
 def _accelerate(tables, train, mover, tally, time, cap_w, called):
     """Run with the greatest effort until the time is up, the ceiling is met, the route ends or the train comes to a stand.
 
-    `time` holds now, the time left, where the middle of the way will be [m], and whether the ceiling can be met.
+    `time` holds now, the time left, about how far the train comes [m], and whether the ceiling can be met.
     """
-    now, tau, middle, free = time
-    v = mover.v_mps
-    track = additional_resistance(tables, train, mover, middle)
-    mean, effort, resistance, by = _balance(tables, train, mover, track, tau, cap_w)
-    if v == 0.0 and mean <= 0.0:
-        _mark(tally, HOLDING if effort > 0.0 else UNPOWERED, by)
-        tally.wished_ns += train.start_n * tau
-        return tau
-    acceleration = (effort - resistance) / train.inertia_kg
-    spent, speed = tau, v + acceleration * tau
-    if speed < 0.0:
-        spent, speed = -v / acceleration, 0.0
-    distance = 0.5 * (v + speed) * spent
-    if free:
-        distance, spent, speed = _meet_ceiling(tables, train, mover, acceleration, (distance, spent, speed))
-    _mark(tally, ACCELERATING if effort > 0.0 else UNPOWERED, BY_NOTHING if effort >= train.start_n else by)
+    now, tau, distance, free = time
+    v, meant = mover.v_mps, tau
+    effort = resistance = acceleration = spent = speed = 0.0
+    by = BY_DRIVE
+    for _ in range(_CUTS):  # a way that is cut short has another middle and mean speed
+        track = additional_resistance(tables, train, mover, mover.s_m + 0.5 * distance, distance)
+        mean, effort, resistance, by = _balance(tables, train, mover, track, meant, cap_w)
+        if v == 0.0 and mean <= 0.0:
+            _mark(tally, HOLDING if effort > 0.0 else _unpowered(train), by)
+            tally.wished_ns += train.start_n * tau
+            return tau
+        acceleration = (effort - resistance) / train.inertia_kg
+        spent, speed = tau, v + acceleration * tau
+        if speed < 0.0:
+            spent, speed = -v / acceleration, 0.0
+        distance = 0.5 * (v + speed) * spent
+        if free:
+            distance, spent, speed = _meet_ceiling(tables, train, mover, acceleration, (distance, spent, speed))
+        if abs(spent - meant) <= TINY_S:
+            break
+        meant = max(spent, TINY_S)
+    _mark(tally, ACCELERATING if effort > 0.0 else _unpowered(train), BY_NOTHING if effort >= train.start_n else by)
     tally.wished_ns += train.start_n * spent
     _tally_traction(tables, train, mover, tally, effort, (distance, spent))
     _tally_resistance(tally, resistance, distance, spent)
@@ -276,14 +284,14 @@ def _follow(tables, train, mover, tally, time, cap_w, called):
     if spent > left:
         spent, speed = left, v - slowing * left
         distance = 0.5 * (v + speed) * spent
-    mean, middle = 0.5 * (v + speed), mover.s_m + 0.5 * distance
-    track = additional_resistance(tables, train, mover, middle)
+    mean = 0.5 * (v + speed)
+    track = additional_resistance(tables, train, mover, mover.s_m + 0.5 * distance, distance)
     resistance, _ = _resistance(train, track, mean)
     needed = resistance - train.inertia_kg * slowing
     if needed > 0.0:
         effort, _, _ = _effort(tables, train, mover, mean, cap_w)
         if needed > effort:
-            return _accelerate(tables, train, mover, tally, (now, spent, middle, False), cap_w, called)
+            return _accelerate(tables, train, mover, tally, (now, spent, distance, False), cap_w, called)
         _tally_traction(tables, train, mover, tally, needed, (distance, spent))
     else:
         _tally_brake(train, tally, -needed, distance, spent)
@@ -299,6 +307,11 @@ def _advance(tables, train, mover, called, way, speed):
     note_calls(tables, train, mover, called, way)
     mover.s_m += way[1]
     mover.v_mps = speed
+
+
+@inlined
+def _unpowered(train):
+    return COASTING if train.drive == NO_DRIVE else UNPOWERED
 
 
 @inlined

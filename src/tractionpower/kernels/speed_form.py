@@ -14,7 +14,18 @@ from tractionpower.kernels.journey import ARRIVED, OUT_OF_ROWS, STUCK, STUCK_S
 from tractionpower.kernels.pantograph import auxiliary_current, traction
 from tractionpower.kernels.series_motors import choose_notch
 from tractionpower.kernels.train_step import settle, wish
-from tractionpower.kernels.train_tables import ACCELERATING, BY_DRIVE, HOLDING, INVERTER, RUNNING, SERIES_MOTORS, STAYING
+from tractionpower.kernels.train_tables import (
+    ACCELERATING,
+    BY_NOTHING,
+    COASTING,
+    HOLDING,
+    INVERTER,
+    NO_DRIVE,
+    RUNNING,
+    SERIES_MOTORS,
+    STAYING,
+    UNPOWERED,
+)
 from tractionpower.kernels.wayside import additional_resistance, note_calls
 
 SPEED_PER_TIME = 0.2
@@ -66,7 +77,7 @@ def _rates(tables, train, mover, v, s, u):
     power, current, resistor_w, _ = traction(tables, train, mover, need_w, u, (speed, 0.0, 0.0))
     if need_w > 0.0:
         effort *= power / need_w
-    constant, drag = additional_resistance(tables, train, mover, s)
+    constant, drag = additional_resistance(tables, train, mover, s, 0.0)
     resistance = train.a_n + constant + (train.b_ns_per_m + (train.c_ns2_per_m2 + drag) * v) * v
     return (effort - resistance) / train.inertia_kg, (u * current, effort * v, resistor_w)
 
@@ -86,7 +97,8 @@ def _speed_step(tables, state, k, clock, u, row):
     first, _ = _rates(tables, train, mover, mover.v_mps, mover.s_m, u)
     if abs(first) < BALANCE_MPS2:
         return 0.0
-    change = dv if first > 0.0 else -min(dv, mover.v_mps)
+    most = min(dv, abs(first) * dv / SPEED_PER_TIME)  # no longer than a time step: slopes and voltages change on the way
+    change = most if first > 0.0 else -min(most, mover.v_mps)
     low, high, ended = 0.0, 1.0, False
     time, distance, work = _integrate(tables, train, mover, change, u)
     share = 1.0
@@ -105,12 +117,25 @@ def _speed_step(tables, state, k, clock, u, row):
         return 0.0
     v = mover.v_mps
     _write(train, row, (now, time, distance), (v, v + share * change), u, work)
-    row.s_m = mover.s_m
+    row.s_m, row.limited_by = mover.s_m, _limited_by(tables, train, mover, u)
     note_calls(tables, train, mover, (state.arrived_s, state.left_s), (now, distance, share * change / time))
     mover.s_m += distance
     mover.v_mps = v + share * change
     mover.voltage_v = u
     return time
+
+
+@njit
+def _limited_by(tables, train, mover, u):
+    speed = max(mover.v_mps, _CRAWL_MPS)
+    effort, _, by = greatest_effort(tables, train, mover, speed)
+    need_w = effort * speed
+    if train.drive == INVERTER:
+        need_w /= efficiency_at(tables, train, speed, 1.0)
+    power, _, _, cut = traction(tables, train, mover, need_w, u, (speed, 0.0, 0.0))
+    if power < need_w * (1.0 - 1e-9):
+        return cut
+    return BY_NOTHING if effort >= train.start_n else by
 
 
 @njit
@@ -172,9 +197,10 @@ def _write(train, row, way, speeds, u, work):
     now, time, distance = way
     line_j, wheel_j, resistor_j = work
     auxiliary_w = u * auxiliary_current(train, u)
-    row.time_s, row.v_mps, row.phase, row.limited_by = now, speeds[0], ACCELERATING, BY_DRIVE
+    row.time_s, row.v_mps = now, speeds[0]
+    row.phase = ACCELERATING if wheel_j > 0.0 else COASTING if train.drive == NO_DRIVE else UNPOWERED
     row.acceleration_mps2 = (speeds[1] - speeds[0]) / time
-    row.traction_n = row.wished_n = wheel_j / distance
+    row.traction_n, row.wished_n = wheel_j / distance, train.start_n
     row.resistance_n = row.traction_n - train.inertia_kg * (speeds[1] ** 2 - speeds[0] ** 2) / (2.0 * distance)
     row.voltage_v, row.auxiliary_w, row.wheel_w = u, auxiliary_w, wheel_j / time
     row.power_w = line_j / time + auxiliary_w

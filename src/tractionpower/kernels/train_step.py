@@ -35,10 +35,11 @@ def wish(tables, state, k, t, h):
     best = choose_notch(tables, train, trial, t)
     trial.notch = best
     run_step(tables, train, trial, state.wishes[k], (t, h), np.inf, called)
-    need_w = state.wishes[k].line_j / h
-    is_full = state.wishes[k].wished_ns >= train.start_n * h * (1.0 - _FULL)
+    tally = state.wishes[k]
+    need_w = tally.line_j / tally.moving_s if tally.moving_s > 0.0 else 0.0
+    is_full = tally.wished_ns >= train.start_n * tally.moving_s * (1.0 - _FULL)
     if need_w > 0.0 and not (is_full or trial.relay_open):
-        speeds = mean_speeds(train, mover, state.wishes[k], h)
+        speeds = mean_speeds(train, mover, tally)
         _, most, _ = at_full(tables, tables.notches[train.first_notch + best], mover.voltage_v, speeds)
         if need_w < most:
             trial.notch = lowest_notch(tables, train, mover, best, need_w, speeds)
@@ -49,13 +50,13 @@ def wish(tables, state, k, t, h):
 
 
 @inlined
-def mean_speeds(train, mover, tally, h):
-    """Return what the mean speed of a step follows from: speed [m/s], half of step over inertia [s/kg], resistance [N].
+def mean_speeds(train, mover, tally):
+    """Return what the mean speed of a step follows from: speed [m/s], half of time over inertia [s/kg], resistance [N].
 
     The resistance is that of the trial, whose effort differs from the one permitted by what the voltage takes away.
     """
     resistance = tally.resistance_j / tally.moved_m if tally.moved_m > 0.0 else 0.0
-    return mover.v_mps, 0.5 * h / train.inertia_kg, resistance
+    return mover.v_mps, 0.5 * tally.moving_s / train.inertia_kg, resistance
 
 
 @inlined
@@ -79,15 +80,13 @@ def settle(tables, state, k, clock, u, row):
     t, h = clock
     train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
     wished, done = state.wishes[k], state.done[k]
-    need_w = wished.line_j / h
-    speeds = (0.0, 0.0, 0.0)
-    if train.drive > INVERTER and need_w > 0.0:
-        speeds = mean_speeds(train, mover, wished, h)
-    got_w, current, resistor_w, by = traction(tables, train, trial, need_w, u, speeds)
+    moving = wished.moving_s / h  # limits hold while the train moves, powers of a row are means of the step
+    need_w = wished.line_j / wished.moving_s if moving > 0.0 else 0.0
+    got_w, current, resistor_w, by = traction(tables, train, trial, need_w, u, mean_speeds(train, mover, wished))
     row.time_s, row.s_m, row.v_mps = t, mover.s_m, mover.v_mps
     limited_by = wished.limited_by
     if got_w < need_w * (1.0 - _SAME):
-        _retry(tables, state, k, clock, got_w)
+        _retry(tables, state, k, clock, got_w * moving)
         limited_by = by
     else:
         state.done[k] = wished
@@ -96,7 +95,7 @@ def settle(tables, state, k, clock, u, row):
     mover.voltage_v = u
     if train.drive == SERIES_MOTORS and done.traction_j == 0.0:  # motors that were off start in the first grouping
         mover.notch, mover.notch_since_s = 0, -np.inf
-    write_row(train, done, row, h, u, (u * current, resistor_w))
+    write_row(train, done, row, h, u, (u * current * moving, resistor_w * moving))
     row.wished_n = wished.wished_ns / h
     row.acceleration_mps2 = (mover.v_mps - v) / h
     row.phase = done.phase

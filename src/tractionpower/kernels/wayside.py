@@ -8,6 +8,10 @@ GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s2] (ISO 80000-3)."""
 
 
+_POINT_M = 1e-3
+"""Shortest way over which the resistance under the front is taken [m]."""
+
+
 @inlined
 def _profile(knots, first, last, i, at):
     """Return the knot before `at` [m], searched from the knot `i`, and height, added resistance and drag there."""
@@ -29,10 +33,11 @@ def _profile(knots, first, last, i, at):
 
 
 @inlined
-def additional_resistance(tables, train, mover, s):
-    """Return the resistance by gradient, curves and tunnels, the front at `s` [m].
+def additional_resistance(tables, train, mover, s, way):
+    """Return the resistance by gradient, curves and tunnels on a `way` [m] in whose middle the front is at `s` [m].
 
-    Both act as their mean under the train, which for gradients is m g (z(s) - z(s - L)) / L.
+    They act as their mean under the train, which for gradients is m g (z(s) - z(s - L)) / L; where they act under the
+    front alone, as their mean over the way.
 
     Returns
     -------
@@ -45,19 +50,13 @@ def additional_resistance(tables, train, mover, s):
     last = first + train.knots - 1
     if last <= first:
         return 0.0, 0.0
+    length = train.spread_m
+    if length == 0.0:
+        length = max(way, _POINT_M)
+        s += 0.5 * length
     i, height, added, drag = _profile(knots, first, last, first + mover.front, s)
-    mover.front = i - first
-    if train.spread_m > 0.0:
-        length = train.spread_m
-        j, tail_height, tail_added, tail_drag = _profile(knots, first, last, first + mover.tail, s - length)
-        mover.tail = j - first
-    else:
-        if i == last:
-            return 0.0, 0.0
-        here, after = knots[i], knots[i + 1]
-        length = after.at_m - here.at_m
-        height, added, drag = after.height_m, after.added_m, after.drag_kg
-        tail_height, tail_added, tail_drag = here.height_m, here.added_m, here.drag_kg
+    j, tail_height, tail_added, tail_drag = _profile(knots, first, last, first + mover.tail, s - length)
+    mover.front, mover.tail = i - first, j - first
     rise = (height - tail_height + added - tail_added) / length
     return train.mass_kg * GRAVITY * rise, (drag - tail_drag) / length
 
