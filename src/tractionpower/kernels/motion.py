@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tractionpower.kernels.effort import efficiency_at, greatest_effort
+from tractionpower.kernels.effort import greatest_effort
 from tractionpower.kernels.jit import inlined
+from tractionpower.kernels.tally import add_brake, add_resistance, add_traction, clear, mark
 from tractionpower.kernels.train_tables import (
     ACCELERATING,
     BRAKING,
@@ -25,7 +26,6 @@ from tractionpower.kernels.train_tables import (
     DWELLING,
     GONE,
     HOLDING,
-    INVERTER,
     LEAVE,
     NO_DRIVE,
     OUTSIDE,
@@ -65,7 +65,7 @@ def run_step(tables, train, mover, tally, clock, cap_w, called):
     called : tuple
         Arrays of arrivals and departures by row of the stops [s], which are written.
     """
-    _clear(tally)
+    clear(tally)
     now, end = clock[0], clock[0] + clock[1]
     for _ in range(_MOST_PHASES):
         left = end - now
@@ -85,15 +85,6 @@ def run_step(tables, train, mover, tally, clock, cap_w, called):
             spent = _stand(tables, train, mover, tally, (now, left), called)
         tally.on_line_s += spent
         now += spent
-
-
-@inlined
-def _clear(tally):
-    tally.traction_ns = tally.traction_j = tally.line_j = 0.0
-    tally.brake_ns = tally.brake_j = tally.electric_ns = tally.electric_j = 0.0
-    tally.resistance_ns = tally.resistance_j = tally.wished_ns = 0.0
-    tally.moved_m = tally.moving_s = tally.on_line_s = 0.0
-    tally.phase, tally.limited_by = -1, BY_NOTHING
 
 
 @inlined
@@ -220,7 +211,7 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
         track = additional_resistance(tables, train, mover, mover.s_m + 0.5 * distance, distance)
         mean, effort, resistance, by = _balance(tables, train, mover, track, meant, cap_w)
         if v == 0.0 and mean <= 0.0:
-            _mark(tally, HOLDING if effort > 0.0 else _unpowered(train), by)
+            mark(tally, HOLDING if effort > 0.0 else _unpowered(train), by)
             tally.wished_ns += train.start_n * tau
             return tau
         acceleration = (effort - resistance) / train.inertia_kg
@@ -233,10 +224,10 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
         if abs(spent - meant) <= TINY_S:
             break
         meant = max(spent, TINY_S)
-    _mark(tally, ACCELERATING if effort > 0.0 else _unpowered(train), BY_NOTHING if effort >= train.start_n else by)
+    mark(tally, ACCELERATING if effort > 0.0 else _unpowered(train), BY_NOTHING if effort >= train.start_n else by)
     tally.wished_ns += train.start_n * spent
-    _tally_traction(tables, train, mover, tally, effort, (distance, spent))
-    _tally_resistance(tally, resistance, distance, spent)
+    add_traction(tables, train, mover, tally, effort, (distance, spent))
+    add_resistance(tally, resistance, distance, spent)
     _advance(tables, train, mover, called, (now, distance, acceleration), speed)
     return spent
 
@@ -292,12 +283,12 @@ def _follow(tables, train, mover, tally, time, cap_w, called):
         effort, _, _ = _effort(tables, train, mover, mean, cap_w)
         if needed > effort:
             return _accelerate(tables, train, mover, tally, (now, spent, distance, False), cap_w, called)
-        _tally_traction(tables, train, mover, tally, needed, (distance, spent))
+        add_traction(tables, train, mover, tally, needed, (distance, spent))
     else:
-        _tally_brake(train, tally, -needed, distance, spent)
-    _mark(tally, CRUISING if slowing == 0.0 else BRAKING, BY_SPEED if slowing == 0.0 else BY_NOTHING)
+        add_brake(train, tally, -needed, distance, spent)
+    mark(tally, CRUISING if slowing == 0.0 else BRAKING, BY_SPEED if slowing == 0.0 else BY_NOTHING)
     tally.wished_ns += needed * spent
-    _tally_resistance(tally, resistance, distance, spent)
+    add_resistance(tally, resistance, distance, spent)
     _advance(tables, train, mover, called, (now, distance, -slowing), speed)
     return spent
 
@@ -312,47 +303,3 @@ def _advance(tables, train, mover, called, way, speed):
 @inlined
 def _unpowered(train):
     return COASTING if train.drive == NO_DRIVE else UNPOWERED
-
-
-@inlined
-def _mark(tally, phase, by):
-    """Note the first phase of the step and what limits the effort in it."""
-    if tally.phase < 0:
-        tally.phase, tally.limited_by = phase, by
-
-
-@inlined
-def _tally_traction(tables, train, mover, tally, effort, way):
-    distance, spent = way
-    work = effort * distance
-    tally.traction_ns += effort * spent
-    tally.traction_j += work
-    if train.drive != INVERTER:
-        tally.line_j += work
-    elif train.map_loads == 0:
-        tally.line_j += work / train.efficiency
-    elif work > 0.0:
-        mean = distance / spent
-        share = effort / greatest_effort(tables, train, mover, mean)[0]
-        tally.line_j += work / efficiency_at(tables, train, mean, share)
-
-
-@inlined
-def _tally_brake(train, tally, effort, distance, spent):
-    """Add the brakes; the electric one gives what it can at the mean speed."""
-    mean = distance / spent if spent > 0.0 else 0.0
-    electric = 0.0
-    if mean > train.brake_from_mps and mean > 0.0:
-        electric = min(effort, train.brake_n, train.brake_w / mean)
-    tally.brake_ns += effort * spent
-    tally.brake_j += effort * distance
-    tally.electric_ns += electric * spent
-    tally.electric_j += electric * distance
-
-
-@inlined
-def _tally_resistance(tally, resistance, distance, spent):
-    tally.resistance_ns += resistance * spent
-    tally.resistance_j += resistance * distance
-    tally.moved_m += distance
-    tally.moving_s += spent

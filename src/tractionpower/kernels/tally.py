@@ -1,0 +1,63 @@
+"""The tally of a step: what forces have done to a train, added up over its phases."""
+
+from __future__ import annotations
+
+from tractionpower.kernels.effort import efficiency_at, greatest_effort
+from tractionpower.kernels.jit import inlined
+from tractionpower.kernels.train_tables import BY_NOTHING, INVERTER
+
+
+@inlined
+def clear(tally):
+    """Start a step."""
+    tally.traction_ns = tally.traction_j = tally.line_j = 0.0
+    tally.brake_ns = tally.brake_j = tally.electric_ns = tally.electric_j = 0.0
+    tally.resistance_ns = tally.resistance_j = tally.wished_ns = 0.0
+    tally.moved_m = tally.moving_s = tally.on_line_s = 0.0
+    tally.phase, tally.limited_by = -1, BY_NOTHING
+
+
+@inlined
+def mark(tally, phase, by):
+    """Note the first phase of the step and what limits the effort in it."""
+    if tally.phase < 0:
+        tally.phase, tally.limited_by = phase, by
+
+
+@inlined
+def add_traction(tables, train, mover, tally, effort, way):
+    """Add the tractive effort [N] of a phase over its way (distance [m], time [s])."""
+    distance, spent = way
+    work = effort * distance
+    tally.traction_ns += effort * spent
+    tally.traction_j += work
+    if train.drive != INVERTER:
+        tally.line_j += work
+    elif train.map_loads == 0:
+        tally.line_j += work / train.efficiency
+    elif work > 0.0:
+        mean = distance / spent
+        share = effort / greatest_effort(tables, train, mover, mean)[0]
+        tally.line_j += work / efficiency_at(tables, train, mean, share)
+
+
+@inlined
+def add_brake(train, tally, effort, distance, spent):
+    """Add the brakes; the electric one gives what it can at the mean speed."""
+    mean = distance / spent if spent > 0.0 else 0.0
+    electric = 0.0
+    if mean > train.brake_from_mps and mean > 0.0:
+        electric = min(effort, train.brake_n, train.brake_w / mean)
+    tally.brake_ns += effort * spent
+    tally.brake_j += effort * distance
+    tally.electric_ns += electric * spent
+    tally.electric_j += electric * distance
+
+
+@inlined
+def add_resistance(tally, resistance, distance, spent):
+    """Add the resistance [N] of a phase, its distance [m] and time [s]."""
+    tally.resistance_ns += resistance * spent
+    tally.resistance_j += resistance * distance
+    tally.moved_m += distance
+    tally.moving_s += spent
