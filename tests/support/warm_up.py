@@ -1,7 +1,9 @@
 """Compiles all kernels once, before several workers start and each would compile them: ``python -m tests.support.warm_up``."""
 
+import sys
 import tempfile
 import time
+from pathlib import Path
 
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.model.scenario import Scenario
@@ -24,12 +26,27 @@ def tiny_scenario() -> Scenario:
     )
 
 
+def _run_trains() -> None:
+    """Compile what journeys and curves of trains need; kinds of drive share the kernels."""
+    sys.path.insert(0, str(Path(__file__).parent))
+    from small_trains import make_trains  # noqa: PLC0415
+
+    from tractionpower.movement.curves import drive_curves  # noqa: PLC0415
+    from tractionpower.movement.journey import theoretical_journeys  # noqa: PLC0415
+
+    scenario = make_trains(0.2)
+    for form in ("time", "speed"):
+        theoretical_journeys(scenario, form=form)
+    drive_curves(scenario.trains[0], scenario.vehicles, scenario.limits)
+
+
 def main() -> None:
     from tractionpower.cosimulation.simulate import simulate  # noqa: PLC0415 - importing it is part of what is timed
 
     started = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         simulate(tiny_scenario(), folder)
+    _run_trains()
     print(f"kernels are compiled: {time.perf_counter() - started:.1f} s")
 
 

@@ -158,8 +158,20 @@ def _ceiling(tables, train, mover, s):
 
 @njit
 def _is_above(tables, train, mover, distance, change):
-    v = mover.v_mps + change
-    return v * v > _ceiling(tables, train, mover, mover.s_m + distance)
+    """Tell whether a way passes the ceiling anywhere: a stop or a short limit may lie within it, the square of v straight."""
+    if not distance > 0.0:
+        return False
+    v, w, end = mover.v_mps + change, mover.v_mps * mover.v_mps, mover.s_m + distance
+    slope = (v * v - w) / distance
+    for p in range(train.first_piece + mover.piece, train.first_piece + train.pieces - 1):
+        piece, until = tables.pieces[p], tables.pieces[p + 1].from_m
+        if until > mover.s_m:
+            at = min(until, end)
+            if w + slope * (at - mover.s_m) > piece.w + piece.dw * (at - piece.from_m):
+                return True
+            if until >= end:
+                return False
+    return True
 
 
 @njit

@@ -18,14 +18,19 @@ def broken_rules(declaration: Declaration, parts: tuple[str, ...]) -> list[Probl
     """
     plain = _plain(declaration)
     try:
-        type(declaration).model_validate(plain)
+        valid = type(declaration).model_validate(plain)
     except ValidationError as error:
         return [
             Problem("bad_value", model_path(plain, detail["loc"]), _found(detail["input"], detail["msg"]))
             for detail in error.errors(include_url=False)
             if detail["loc"][:1] in {(part,) for part in parts}
         ]
-    return []
+    remedy = "build it with model_validate, or change it by path"
+    return [
+        Problem("bad_value", part, "it was not validated, and holds values of other types than declared", remedy=remedy)
+        for part in parts
+        if getattr(valid, part) != getattr(declaration, part)
+    ]
 
 
 def _plain(value: Any) -> Any:

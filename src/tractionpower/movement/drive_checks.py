@@ -53,7 +53,7 @@ def _check_fold_back(path: str, drive: InverterDrive | TableDrive, voltages: Sys
     if (drive.fold_back_from_v is None and drive.fold_back_to_v is None) or start is None or end is None or start < end:
         return []
     from_, to = ("" if own is not None else " by default" for own in (drive.fold_back_from_v, drive.fold_back_to_v))
-    found = f"feeding back is reduced from {start:g} V{from_} and ends at {end:g} V{to}"
+    found = f"a fold-back from {start:g} V{from_} to {end:g} V{to}"
     allowed = f"fold_back_from_v below {end:g} V" if given == "fold_back_from_v" else f"fold_back_to_v above {start:g} V"
     return [Problem("fold_back", f"{path}.{given}", found, allowed, "correct one of them")]
 
@@ -159,7 +159,7 @@ def _check_first_notch(path: str, drive: SeriesMotorDrive, first_ohm: float, nom
 def _check_relay(path: str, relay: Relay | None, voltages: SystemVoltages | None) -> list[Problem]:
     if relay is None or voltages is None or relay.on_v < voltages.u_n:
         return []
-    found = f"having opened, the relay closes above {relay.on_v:g} V only: the motors stay off at nominal voltage"
+    found = f"{relay.on_v:g} V: once open, the relay leaves the motors off at nominal voltage and below"
     return [doubt("relay_never_closes", path, found, f"below U_n = {voltages.u_n:g} V", "lower it")]
 
 

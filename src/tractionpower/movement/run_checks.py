@@ -15,7 +15,7 @@ from tractionpower.alignment.routes import check_route, check_speed_limits, name
 from tractionpower.errors import Problem, Severity
 from tractionpower.model.limits import SystemVoltages
 from tractionpower.model.line import Line, Station
-from tractionpower.model.timetable import Leg, TrainRun
+from tractionpower.model.timetable import Call, Leg, TrainRun
 from tractionpower.model.vehicle import Train, Vehicle
 from tractionpower.movement.ceiling import LOWEST_SHARE
 from tractionpower.movement.climbing import find_stall, hard_stretches, least_braking, starting_effort_n
@@ -80,15 +80,18 @@ def check_run(path: str, run: TrainRun, site: Site) -> list[Problem]:
         return problems
     train = _train(run, site)
     route = site.routes.path(run, train)
-    misplaced = list(_check_calls(path, run, route, stations))
+    misplaced, calls = _place_calls(path, run, route, stations)
     problems += misplaced
     if train is None:
         return problems
     problems += check_speed_limits(f"{path}.route", route)
     formation = form(train, site.vehicles)
     problems += _check_contact_line(path, run, route, formation, site)
-    if not misplaced and all(call.station in stations for call in run.calls):
-        problems += _check_planned(path, plan_run(run, train, formation, route, site.line), site)
+    if calls == run.calls:
+        return problems + _check_planned(path, plan_run(run, train, formation, route, site.line), site)
+    if run.start is not None:  # where it stops is not known, how fast it may start is
+        planned = plan_run(run.model_copy(update={"calls": calls, "end": "leave"}), train, formation, route, site.line)
+        problems += _check_start(path, planned, float(ceiling_of(planned)["w"][0]))
     return problems
 
 
@@ -100,26 +103,31 @@ def _train(run: TrainRun, site: Site) -> Train | None:
     return train if all(part.id in site.vehicles for part in train.vehicles) else None
 
 
-def _check_calls(path: str, run: TrainRun, route: RoutePath, stations: Mapping[str, Station]) -> Iterator[Problem]:
-    """Yield calls that the route does not come to, or not in this order; calls of unknown stations are passed over."""
-    at_m, before = 0.0, ""
+def _place_calls(
+    path: str, run: TrainRun, route: RoutePath, stations: Mapping[str, Station]
+) -> tuple[list[Problem], tuple[Call, ...]]:
+    """Return the calls that the route does not come to, or not in this order, and those that it does come to."""
+    problems: list[Problem] = []
+    placed: list[Call] = []
+    at_m = 0.0
     for k, call in enumerate(run.calls):
-        where = f"{path}.calls[{k}].station"
-        if call.station not in stations:
-            continue
-        if call.station == before:
-            remedy = "make it one call, or leave one out"
-            yield Problem("same_call_twice", where, f"{call.station}, as the call before", "another station", remedy)
+        where, before = f"{path}.calls[{k}].station", placed[-1].station if placed else ""
+        if call.station not in stations:  # told already
             continue
         found = stop_distance(route, stations[call.station], from_m=at_m)
-        if found is not None:
-            at_m, before = found, call.station
+        if call.station == before:
+            remedy = "make it one call, or leave one out"
+            problems.append(Problem("same_call_twice", where, f"{before}, as the call before", "another station", remedy))
+        elif found is not None:
+            at_m = found
+            placed.append(call)
         elif stop_distance(route, stations[call.station]) is None:
             remedy = "correct the route, the station, or the tracks and stop_km of the station"
-            yield Problem("off_route", where, f"the route does not come to {call.station}", remedy=remedy)
+            problems.append(Problem("off_route", where, f"the route does not come to {call.station}", remedy=remedy))
         else:
             text, remedy = f"the route comes to {call.station} before {before}", "put the calls in the order of the route"
-            yield Problem("call_order", where, text, f"stations behind {before}", remedy)
+            problems.append(Problem("call_order", where, text, remedy=remedy))
+    return problems, tuple(placed)
 
 
 def _check_contact_line(path: str, run: TrainRun, route: RoutePath, formation: Formation, site: Site) -> list[Problem]:
@@ -225,7 +233,7 @@ def _no_drive(path: str, planned: PlannedRun, ceiling: NDArray[np.void]) -> Prob
     stall = find_stall(planned, ceiling, 0.0)
     severity: Severity = "error" if stall is not None and planned.start_mps == 0.0 else "warning"
     found = "no vehicle of the train drives it"
-    if stall is not None:
+    if stall is not None and stall.at_m > 0.0:
         track, km = planned.path.place(stall.at_m)
         found += f": it comes to a stand on track {track} at km {_km(km)} at the latest"
     return Problem("no_drive", path, found, remedy="add a vehicle with a drive, or set powered: true", severity=severity)

@@ -16,7 +16,7 @@ DAY_S = 86_400.0
 
 def check_times(path: str, run: TrainRun) -> Iterator[Problem]:
     """Yield times of a run that go backwards, and departures before the shortest dwell is over."""
-    last, where = (run.start.time, "of the start") if run.start is not None else (None, "")
+    last, where = (run.start.time, "the start") if run.start is not None else (None, "")
     for k, call in enumerate(run.calls):
         for name in ("arrival", "departure"):
             time = getattr(call, name)
@@ -25,7 +25,7 @@ def check_times(path: str, run: TrainRun) -> Iterator[Problem]:
             if last is not None and time < last:
                 yield _backwards(f"{path}.calls[{k}].{name}", time, last, where)
             else:  # later times are held against the last one that is in order, so that one slip is told once
-                last, where = time, f"{'of the ' if call.stops else 'of passing, '}{name} at {call.station}"
+                last, where = time, f"the {name if call.stops else 'passing'} at {call.station}"
         yield from _check_dwell(f"{path}.calls[{k}]", call)
 
 
@@ -33,7 +33,7 @@ def _backwards(path: str, time: float, last: float, where: str) -> Problem:
     remedy = "correct one of them"
     if last - time > 0.5 * DAY_S:
         remedy = f"times of the next day go on beyond 24:00:00: write {format_time(time + DAY_S)}"
-    found = f"{format_time(time)}, before {format_time(last)} {where}"
+    found = f"{format_time(time)}, before {where}, {format_time(last)}"
     return Problem("times_backwards", path, found, f"from {format_time(last)} on", remedy)
 
 
