@@ -217,3 +217,16 @@ def test_the_order_of_the_method_is_two():
     for coarse, fine in itertools.pairwise(errors):
         assert (coarse / fine).min() > 3.5
         assert (coarse / fine).max() < 4.6
+
+
+def test_the_dwell_does_not_count_where_a_run_begins():
+    stops = {"stations": {"A": 0.0, "Z": 5.0}, "calls": [call("A", departure=100.0, min_dwell_s=30.0), call("Z")]}
+    journey = run(5.0, time=100.0, **stops)
+    assert (journey.calls[0].departure_s, journey.start_s) == (100.0, 100.0)
+
+
+def test_a_run_whose_only_call_is_its_start_goes_to_the_end_of_its_route():
+    journey = run(5.0, stations={"A": 0.0}, calls=[call("A", departure=60.0)])
+    assert journey.status == "complete"
+    assert journey.end_m == 5000.0
+    assert journey.rows["v_mps"][-1] > 20.0

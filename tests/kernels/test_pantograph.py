@@ -55,7 +55,7 @@ def test_little_power_near_standstill_does_work_and_nothing_else(voltage_v, spee
 @pytest.mark.parametrize(("voltage_v", "power_w"), [(3000.0, 290e3), (3600.0, 329.6e3), (1000.0, 60e3), (0.0, 0.0), (-5.0, 0.0)])
 def test_auxiliaries(voltage_v, power_w):
     # 200 kW whatever the voltage, down to U_min2, below with its square; 90 kW of heating at 3 kV with its square.
-    stops = {"stations": {"A": 0.0, "Z": 5.0}, "calls": [call("A", min_dwell_s=100.0), call("Z")]}
+    stops = {"stations": {"A": 0.0, "Z": 5.0}, "calls": [call("A", departure=100.0), call("Z")]}
     stepper = Stepper(make_trains(5.0, auxiliaries={"power_kw": 200.0, "heating_kw": 90.0}, **stops))
     row = stepper.step(voltage_v)
     assert row["power_w"] == row["auxiliary_w"] == pytest.approx(power_w)
@@ -163,3 +163,33 @@ def test_energy_from_the_line_is_that_of_wheel_auxiliaries_and_brakes(voltage_v)
         line_j += row["power_w"]
         work_j += done["traction_j"] / 0.85 + row["auxiliary_w"] - (kept - row["braking_resistor_w"])
     assert line_j == pytest.approx(work_j, rel=1e-9)
+
+
+def test_the_current_limit_of_the_line_is_that_of_the_place_where_the_step_begins():
+    limits = [
+        {"from_km": 0.0, "to_km": 0.5, "max_current_a": 500.0},
+        {"from_km": 0.5, "to_km": 5.0, "max_current_a": 2500.0},
+    ]
+    rows = run(5.0, train_current_limits=limits, step_s=5.0).rows
+    before = rows[rows["s_m"] < 500.0]
+    assert before["s_m"][-1] + 5.0 * rows["v_mps"][len(before) - 1] > 500.0
+    assert before["current_a"].max() == pytest.approx(500.0)
+    assert rows["current_a"].max() > 1000.0
+
+
+def test_a_standing_train_takes_no_more_than_the_line_allows():
+    limits = [{"from_km": -1.0, "to_km": 5.0, "max_current_a": 2000.0, "standstill_current_a": 50.0}]
+    stops = {"stations": {"A": 0.0, "Z": 5.0}, "calls": [call("A", departure=100.0), call("Z")]}
+    journey = run(5.0, train_current_limits=limits, auxiliaries={"power_kw": 300.0}, **stops)
+    standing = journey.rows[journey.rows["time_s"] < 100.0]
+    assert set(standing["current_a"].tolist()) == {50.0}
+    np.testing.assert_allclose(standing["auxiliary_w"], 50.0 * 3000.0)
+    assert journey.rows["auxiliary_w"].max() == pytest.approx(300e3)
+
+
+def test_power_over_voltage_is_that_at_the_wheel_whatever_the_efficiency():
+    grid = [{"speed_kmh": v, "load_percent": p, "efficiency": 0.5 + 0.004 * p} for v in (0.0, 160.0) for p in (0.0, 100.0)]
+    table = [{"voltage_v": 2000.0, "power_kw": 1000.0}, {"voltage_v": 3000.0, "power_kw": 3000.0}]
+    drive = INVERTER | {"efficiency": None, "efficiency_map": grid, "power_over_voltage": table, "max_current_a": 9000.0}
+    rows = run(20.0, drive=drive, voltage_v=2500.0, resistance={"c_n_per_kmh2": 1.0}).rows
+    assert rows["wheel_w"].max() == pytest.approx(2000e3, rel=2e-3)  # the share is that at the start of the step

@@ -193,10 +193,9 @@ def test_no_speed_limit_on_the_route():
     assert check_movement(study(length_km=3.0, stations={}, limits=[(-1.0, 3.0, 100.0)])) == []
 
 
-def test_a_run_that_ends_where_it_begins():
-    calls = [call("A", departure="00:01:00")]
-    assert told(study(calls=calls)) == [("no_way_to_go", "", "error")]
-    assert check_movement(study(calls=calls, end="leave")) == []
+@pytest.mark.parametrize("end", [None, "leave", "stop", "stay"])
+def test_a_run_whose_only_call_is_its_start(end):
+    assert check_movement(study(calls=[call("A", departure="00:01:00")], end=end)) == []
 
 
 def test_a_route_without_contact_line_is_told_once_for_all_runs():

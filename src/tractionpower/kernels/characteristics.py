@@ -9,6 +9,7 @@ from tractionpower.kernels.series_motors import choose_notch
 from tractionpower.kernels.train_tables import INVERTER, SERIES_MOTORS
 
 _CRAWL_MPS = 1e-3
+_NO_LIMIT_A = 1e300
 
 
 @njit
@@ -30,6 +31,6 @@ def trace(tables, movers, u, speed, effort, current):
         need_w = most * v
         if train.drive == INVERTER:
             need_w /= efficiency_at(tables, train, v, 1.0)
-        power, taken, _, _ = traction(tables, train, mover, need_w, u, (v, 0.0, 0.0))
+        power, taken, _, _ = traction(tables, train, mover, need_w, (u, _NO_LIMIT_A), (v, 0.0, 0.0))
         effort[n] = most * power / need_w if need_w > 0.0 else 0.0
         current[n] = taken + auxiliary_current(train, u)

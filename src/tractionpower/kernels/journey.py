@@ -5,7 +5,7 @@ from __future__ import annotations
 from tractionpower.kernels.effort import look_up
 from tractionpower.kernels.jit import njit
 from tractionpower.kernels.train_step import settle, wish
-from tractionpower.kernels.train_tables import HOLDING, RUNNING, STAYING
+from tractionpower.kernels.train_tables import STAYING
 
 ARRIVED, STUCK, OUT_OF_ROWS = 0, 1, 2
 """How a journey ends: the train has left or stays, cannot go on, has used up all rows."""
@@ -39,7 +39,6 @@ def run_journey(tables, state, k, clock, voltage, rows):
     """
     start, h = clock
     mover = state.movers[k]
-    held = 0.0
     for n in range(rows.shape[0]):
         t = start + n * h
         u, _ = look_up(voltage, 0, voltage.shape[0], mover.s_m)
@@ -47,7 +46,6 @@ def run_journey(tables, state, k, clock, voltage, rows):
         settle(tables, state, k, (t, h), u, rows[n])
         if mover.status >= STAYING:
             return n + 1, ARRIVED, t + h
-        held = held + h if rows[n].phase >= HOLDING and mover.v_mps == 0.0 and mover.status == RUNNING else 0.0
-        if held >= STUCK_S:
+        if mover.held_s >= STUCK_S:
             return n + 1, STUCK, t + h
     return rows.shape[0], OUT_OF_ROWS, start + rows.shape[0] * h

@@ -96,7 +96,8 @@ def _arrive(tables, train, mover, now, called):
         if stop.stops and stop.at_m - mover.s_m <= HERE_M:
             called[0][row] = now
             mover.s_m, mover.v_mps, mover.status = stop.at_m, 0.0, STANDING
-            mover.leave_s = max(now + stop.dwell_s, stop.departure_s)
+            dwell = stop.dwell_s if stop.at_m > HERE_M else 0.0  # a run that begins there has been standing already
+            mover.leave_s = max(now + dwell, stop.departure_s)
             return True
         if stop.at_m - mover.s_m <= HERE_M:
             called[0][row] = called[1][row] = now
@@ -273,7 +274,7 @@ def _follow(tables, train, mover, tally, time, cap_w, called):
     spent = _time_of(end - mover.s_m, v, final)
     speed, distance = final, end - mover.s_m
     if spent > left:
-        spent, speed = left, v - slowing * left
+        spent, speed = left, max(v - slowing * left, 0.0)
         distance = 0.5 * (v + speed) * spent
     mean = 0.5 * (v + speed)
     track = additional_resistance(tables, train, mover, mover.s_m + 0.5 * distance, distance)

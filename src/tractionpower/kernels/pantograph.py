@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tractionpower.kernels.effort import look_up
+from tractionpower.kernels.effort import efficiency_at, greatest_effort, look_up
 from tractionpower.kernels.jit import inlined
 from tractionpower.kernels.series_motors import at_full, at_part
 from tractionpower.kernels.train_tables import (
@@ -14,7 +14,6 @@ from tractionpower.kernels.train_tables import (
     SERIES_MOTORS,
     TABLE,
 )
-from tractionpower.kernels.wayside import line_current_limit
 
 _FULL = 1e-9
 """A wish this near to the greatest power is that."""
@@ -33,11 +32,11 @@ def auxiliary_current(train, u):
 
 
 @inlined
-def current_limit(tables, train, mover, u):
+def current_limit(train, u, line_a):
     """Return the largest current of the train at the voltage `u` [A] and what sets it.
 
     Below the knee a U_n the train's own limit falls linearly to the current of the auxiliaries at U_min2, where it leaves
-    nothing for traction (shape of EN 50388, figure 1); the limit of the line holds as well, and the lower one wins.
+    nothing for traction (shape of EN 50388, figure 1); the limit `line_a` of the line holds as well, and the lower one wins.
     """
     limit, by = train.max_current_a, BY_TRAIN_CURRENT
     if u <= train.lowest_v and u < train.knee_v:
@@ -46,18 +45,19 @@ def current_limit(tables, train, mover, u):
         foot = auxiliary_current(train, train.lowest_v)
         share = (u - train.lowest_v) / (train.knee_v - train.lowest_v)
         limit, by = foot + (limit - foot) * share, BY_VOLTAGE
-    line = line_current_limit(tables, train, mover)
-    return (line, BY_LINE_CURRENT) if line < limit else (limit, by)
+    return (line_a, BY_LINE_CURRENT) if line_a < limit else (limit, by)
 
 
 @inlined
-def traction(tables, train, mover, need_w, u, mean_speeds):
-    """Return what traction takes at the voltage `u` where it wishes the power `need_w`.
+def traction(tables, train, mover, need_w, lines, mean_speeds):
+    """Return what traction takes where it wishes the power `need_w`.
 
     Parameters
     ----------
     need_w : float
         Wished mean power of the step [W]: of an inverter drive from the line, of others at the wheel.
+    lines : tuple
+        Voltage [V], and largest train current that the line allows [A].
     mean_speeds : tuple
         Speed at the start of the step [m/s], half of step over inertia [s/kg], resistance [N].
 
@@ -70,14 +70,16 @@ def traction(tables, train, mover, need_w, u, mean_speeds):
     by : int
         What limits it, if `power_w` is less than `need_w`.
     """
+    u, line_a = lines
     if u <= 0.0 or need_w <= 0.0:
         return 0.0, 0.0, 0.0, BY_VOLTAGE
-    limit, by = current_limit(tables, train, mover, u)
+    limit, by = current_limit(train, u, line_a)
     free = max(limit - auxiliary_current(train, u), 0.0)
     if train.drive == INVERTER:
         power = u * free
         if train.powers > 0:
-            table = look_up(tables.points, train.first_power, train.powers, u)[0] / train.efficiency
+            table, _ = look_up(tables.points, train.first_power, train.powers, u)
+            table /= _efficiency_of(tables, train, mover, table, mean_speeds[0])
             if table < power:
                 power, by = table, BY_VOLTAGE
         power = min(power, need_w)
@@ -104,6 +106,15 @@ def traction(tables, train, mover, need_w, u, mean_speeds):
         share = free / current
         return power * share, free, resistor * share, by
     return power, current, resistor, by
+
+
+@inlined
+def _efficiency_of(tables, train, mover, wheel_w, v):
+    """Return the efficiency of an inverter drive that gives the power `wheel_w` [W] at the speed `v` [m/s]."""
+    if train.map_loads == 0 or v <= 0.0:
+        return train.efficiency
+    greatest, _, _ = greatest_effort(tables, train, mover, v)
+    return efficiency_at(tables, train, v, min(wheel_w / (greatest * v), 1.0))
 
 
 @inlined
@@ -152,7 +163,7 @@ def feed_back_share(train, u):
 
 
 @inlined
-def write_row(train, tally, row, spent, u, taken):
+def write_row(train, tally, row, spent, lines, taken):
     """Fill what the electric side of a step says: brakes, auxiliaries, power, losses.
 
     Fold-back acts on what is left of the braking power after the train's own needs. What the line refuses goes to the
@@ -162,14 +173,14 @@ def write_row(train, tally, row, spent, u, taken):
     ----------
     spent : float
         Length of the step [s].
-    u : float
-        Voltage [V].
+    lines : tuple
+        Voltage [V], and largest train current that the line allows [A].
     taken : tuple
         Power [W] of traction from the line, and heat in starting resistors [W].
     """
     traction_w, resistor_w = taken
-    on_line = tally.on_line_s / spent
-    auxiliary_w = u * auxiliary_current(train, u) * on_line
+    u, line_a = lines
+    auxiliary_w = u * min(auxiliary_current(train, u), line_a) * tally.on_line_s / spent
     gained = train.brake_efficiency * tally.electric_j / spent
     returned = refused = heated = 0.0
     own = auxiliary_w + traction_w

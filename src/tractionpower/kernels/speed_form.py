@@ -18,7 +18,6 @@ from tractionpower.kernels.train_tables import (
     ACCELERATING,
     BY_NOTHING,
     COASTING,
-    HOLDING,
     INVERTER,
     NO_DRIVE,
     RUNNING,
@@ -26,7 +25,7 @@ from tractionpower.kernels.train_tables import (
     STAYING,
     UNPOWERED,
 )
-from tractionpower.kernels.wayside import additional_resistance, note_calls
+from tractionpower.kernels.wayside import additional_resistance, line_current_limit, note_calls
 
 SPEED_PER_TIME = 0.2
 """Speed step over time step of the clock [m/s2]."""
@@ -47,7 +46,6 @@ def run_over_speed(tables, state, k, clock, voltage, rows):
     """
     now, h = clock
     mover = state.movers[k]
-    held = 0.0
     for n in range(rows.shape[0]):
         u, _ = look_up(voltage, 0, voltage.shape[0], mover.s_m)
         spent = 0.0
@@ -60,8 +58,7 @@ def run_over_speed(tables, state, k, clock, voltage, rows):
         now += spent
         if mover.status >= STAYING:
             return n + 1, ARRIVED, now
-        held = held + spent if rows[n].phase >= HOLDING and mover.v_mps == 0.0 and mover.status == RUNNING else 0.0
-        if held >= STUCK_S:
+        if mover.held_s >= STUCK_S:
             return n + 1, STUCK, now
     return rows.shape[0], OUT_OF_ROWS, now
 
@@ -74,7 +71,7 @@ def _rates(tables, train, mover, v, s, u):
     need_w = effort * speed
     if train.drive == INVERTER:
         need_w /= efficiency_at(tables, train, speed, 1.0)
-    power, current, resistor_w, _ = traction(tables, train, mover, need_w, u, (speed, 0.0, 0.0))
+    power, current, resistor_w, _ = traction(tables, train, mover, need_w, _lines(tables, train, mover, u), (speed, 0.0, 0.0))
     if need_w > 0.0:
         effort *= power / need_w
     constant, drag = additional_resistance(tables, train, mover, s, 0.0)
@@ -121,8 +118,13 @@ def _speed_step(tables, state, k, clock, u, row):
     note_calls(tables, train, mover, (state.arrived_s, state.left_s), (now, distance, share * change / time))
     mover.s_m += distance
     mover.v_mps = v + share * change
-    mover.voltage_v = u
+    mover.voltage_v, mover.held_s = u, 0.0
     return time
+
+
+@njit
+def _lines(tables, train, mover, u):
+    return u, line_current_limit(tables, train, mover, True)
 
 
 @njit
@@ -132,7 +134,7 @@ def _limited_by(tables, train, mover, u):
     need_w = effort * speed
     if train.drive == INVERTER:
         need_w /= efficiency_at(tables, train, speed, 1.0)
-    power, _, _, cut = traction(tables, train, mover, need_w, u, (speed, 0.0, 0.0))
+    power, _, _, cut = traction(tables, train, mover, need_w, _lines(tables, train, mover, u), (speed, 0.0, 0.0))
     if power < need_w * (1.0 - 1e-9):
         return cut
     return BY_NOTHING if effort >= train.start_n else by

@@ -11,7 +11,17 @@ from tractionpower.kernels.jit import inlined
 from tractionpower.kernels.motion import run_step
 from tractionpower.kernels.pantograph import traction, write_row
 from tractionpower.kernels.series_motors import at_full, choose_notch, lowest_notch
-from tractionpower.kernels.train_tables import DWELLING, INVERTER, OUTSIDE, SERIES_MOTORS, STANDING, WAITING
+from tractionpower.kernels.train_tables import (
+    DWELLING,
+    HOLDING,
+    INVERTER,
+    OUTSIDE,
+    RUNNING,
+    SERIES_MOTORS,
+    STANDING,
+    WAITING,
+)
+from tractionpower.kernels.wayside import line_current_limit
 
 _SAME = 1e-12
 _FULL = 1e-9
@@ -43,9 +53,7 @@ def wish(tables, state, k, t, h):
         _, most, _ = at_full(tables, tables.notches[train.first_notch + best], mover.voltage_v, speeds)
         if need_w < most:
             trial.notch = lowest_notch(tables, train, mover, best, need_w, speeds)
-    if need_w == 0.0:  # the controller goes back to its first position
-        trial.notch, trial.notch_since_s = 0, -np.inf
-    elif trial.notch != mover.notch:
+    if trial.notch != mover.notch:
         trial.notch_since_s = t
 
 
@@ -71,7 +79,7 @@ def _switch_relay(train, mover, t):
     if t - mover.relay_since_s >= train.relay_s:
         mover.relay_open = not mover.relay_open
         mover.relay_since_s = np.inf
-        mover.notch, mover.notch_since_s = 0, -np.inf
+        mover.notch, mover.notch_since_s = 0, t
 
 
 @inlined
@@ -82,7 +90,8 @@ def settle(tables, state, k, clock, u, row):
     wished, done = state.wishes[k], state.done[k]
     moving = wished.moving_s / h  # limits hold while the train moves, powers of a row are means of the step
     need_w = wished.line_j / wished.moving_s if moving > 0.0 else 0.0
-    got_w, current, resistor_w, by = traction(tables, train, trial, need_w, u, mean_speeds(train, mover, wished))
+    lines = (u, line_current_limit(tables, train, mover, moving > 0.0))
+    got_w, current, resistor_w, by = traction(tables, train, trial, need_w, lines, mean_speeds(train, mover, wished))
     row.time_s, row.s_m, row.v_mps = t, mover.s_m, mover.v_mps
     limited_by = wished.limited_by
     if got_w < need_w * (1.0 - _SAME):
@@ -95,7 +104,9 @@ def settle(tables, state, k, clock, u, row):
     mover.voltage_v = u
     if train.drive == SERIES_MOTORS and done.traction_j == 0.0:  # motors that were off start in the first grouping
         mover.notch, mover.notch_since_s = 0, -np.inf
-    write_row(train, done, row, h, u, (u * current * moving, resistor_w * moving))
+    stuck = mover.status == RUNNING and mover.v_mps == 0.0 and done.phase >= HOLDING
+    mover.held_s = mover.held_s + h if stuck else 0.0
+    write_row(train, done, row, h, lines, (u * current * moving, resistor_w * moving))
     row.wished_n = wished.wished_ns / h
     row.acceleration_mps2 = (mover.v_mps - v) / h
     row.phase = done.phase

@@ -157,6 +157,7 @@ MOVER = np.dtype(
         ("relay_open", "?"),
         ("relay_since_s", "f8"),  # since when the voltage asks for the other position; infinite: it does not
         ("voltage_v", "f8"),  # of the step before
+        ("held_s", "f8"),  # for how long it has stood on its way because effort or power lack
         ("finished_s", "f8"),  # when it left the line or came to stay; NaN: not yet
     ]
 )

@@ -62,15 +62,15 @@ def additional_resistance(tables, train, mover, s, way):
 
 
 @inlined
-def line_current_limit(tables, train, mover):
-    """Return the largest train current that the line allows where the front is, moving or standing [A]."""
+def line_current_limit(tables, train, mover, moves):
+    """Return the largest train current that the line allows where the front is [A], standing if it does not move."""
     if train.limits == 0:
         return 1e300
     limits, first = tables.limits, train.first_limit
     while mover.limit + 1 < train.limits and limits[first + mover.limit + 1].from_m <= mover.s_m:
         mover.limit += 1
     here = limits[first + mover.limit]
-    return here.max_a if mover.v_mps > 0.0 else here.standstill_a
+    return here.max_a if moves else here.standstill_a
 
 
 @inlined

@@ -54,8 +54,8 @@ class TrainRun(Declaration):
     start: Start | None = Field(default=None, description="Start of the run; left out: at rest, by the first call's departure.")
     end: Literal["leave", "stop", "stay"] | None = Field(
         default=None,
-        description="At the end of the route: leave at its speed (default without a call there), stop and leave (default with"
-        " one), or stay with its auxiliaries.",
+        description="leave: at its speed at the end of the route; stop: at the last call, or the end of the route, leaving after"
+        " its dwell; stay: there with its auxiliaries. Left out: stop if the last call is a stop, else leave.",
     )
     calls: tuple[Call, ...] = Field(default=(), description="Stations in the order of the run.")
 

@@ -34,6 +34,9 @@ from tractionpower.movement.drives import NO_LIMIT, DrivePools, compile_drive, p
 from tractionpower.movement.formation import KMH, Formation, form
 from tractionpower.movement.pools import Pool
 
+AT_START_M = 1e-3
+"""A call this near to the start of the route is where the run begins, not where it ends [m]."""
+
 KNEE_FACTOR = 0.9
 """Knee factor where the limits table has none for a system (EN 50388 as recalled)."""
 
@@ -164,7 +167,7 @@ def plan_runs(scenario: Scenario, runs: Sequence[TrainRun]) -> list[PlannedRun]:
 def plan_run(run: TrainRun, train: Train, formation: Formation, path: RoutePath, line: Line) -> PlannedRun:
     """Return a run on its route; calls that the route does not come to are left out from the first of them on."""
     calls = place_calls(run, path, line)
-    stops_last = bool(calls) and calls[-1].call.stops
+    stops_last = bool(calls) and calls[-1].call.stops and calls[-1].at_m > AT_START_M
     end = {"leave": LEAVE, "stop": STOP_THERE, "stay": STAY, None: STOP_THERE if stops_last else LEAVE}[run.end]
     route_m = calls[-1].at_m if stops_last and end != LEAVE else path.length_m
     start_mps = run.start.speed_kmh / KMH if run.start is not None else 0.0

@@ -94,7 +94,10 @@ def mechanical_ledger(
 
 
 def pantograph_ledger(rows: NDArray[np.void], seconds: Floats) -> TrainLedger:
-    """Return energy from the line against work at the wheel, losses, auxiliaries, and what braking gives."""
+    """Return energy from the line against work at the wheel, losses, auxiliaries, and what braking gives.
+
+    A drive that gives more than it takes leaves a gap, too.
+    """
     named = {
         "line": -rows["voltage_v"] * rows["current_a"],
         "wheel": rows["wheel_w"],
@@ -102,6 +105,7 @@ def pantograph_ledger(rows: NDArray[np.void], seconds: Floats) -> TrainLedger:
         "starting_resistors": rows["starting_resistor_w"],
         "auxiliaries": rows["auxiliary_w"],
         "recovered": -rows["recovered_w"],
+        "out_of_nothing": np.maximum(-rows["drive_loss_w"], 0.0),
     }
     return TrainLedger({name: float(seconds @ power) for name, power in named.items()}, ELECTRIC_SHARE)
 

@@ -155,10 +155,6 @@ def _without_contact_line(route: RoutePath, contact: Coverage) -> Iterator[Inter
 
 
 def _check_planned(path: str, planned: PlannedRun, site: Site) -> list[Problem]:
-    if planned.route_m <= 0.0:
-        station = planned.calls[-1].call.station
-        found = f"the run ends at {station}, where it begins: a last call at which the train stops is its end"
-        return [Problem("no_way_to_go", path, found, remedy="add the calls behind it, or write end: leave")]
     ceiling = ceiling_of(planned)
     problems = [*_check_start(path, planned, float(ceiling["w"][0])), *_check_brakes(path, planned)]
     problems += _check_line_current(path, planned, site.voltages)
