@@ -6,7 +6,7 @@ from solved import Solved, seed_network, single_line, tap
 
 from tractionpower.kernels.network import CONVERGED, NOT_CONVERGED, NOT_SERVABLE, solve, solve_warm
 from tractionpower.kernels.spans import place_ports
-from tractionpower.kernels.tables import new_work
+from tractionpower.kernels.tables import SEGMENT, new_work
 
 
 def four(**what):
@@ -159,6 +159,26 @@ def test_the_low_solution_exists_and_a_warm_start_there_is_refused():
     assert work.ports["u"][2] < 150.0
     work.ports["u"][:2] = 3600.0 - 0.12 * current
     assert solve_warm(solved.network, work)[0] == 0
+
+
+@pytest.mark.parametrize(("segment", "low", "high"), [(0, -1e5, 2000.0), (1, -1e5, 2700.0), (2, 1000.0, 1e5), (3, 2000.0, 1e5)])
+def test_a_warm_start_may_move_a_port_by_one_segment(segment, low, high):
+    solved = Solved(*single_line([tap("x", 6.0, kw=10.0)]))
+    network, work = solved.network, solved.work
+    segments = np.zeros(4, SEGMENT)
+    segments["from_v"] = [-np.inf, 1000.0, 2000.0, 2700.0]
+    network = network._replace(segments=np.concatenate([network.segments, segments]))
+    port = network.ports[2]
+    port["first_segment"], port["segments"], port["demand"] = len(solved.network.segments), 4, False
+    work.ports["u"][2] = [500.0, 1500.0, 2500.0, 3000.0][segment]
+    solve_warm(network, work)
+    assert (work.ports["lowest_v"][2], work.ports["highest_v"][2]) == (low, high)
+
+
+def test_a_warm_start_does_not_move_a_demand_below_half_the_voltage():
+    solved = Solved(*single_line([tap("x", 6.0, kw=1000.0)]))
+    solved.solve(warm=True)
+    assert solved.work.ports["lowest_v"][2] >= 1800.0
 
 
 def test_the_range_has_one_solution_from_anywhere():

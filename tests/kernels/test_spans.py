@@ -156,6 +156,19 @@ def test_a_strongly_falling_port_is_told():
     work.ports["g"] = -1e4
     place_ports(network, work)
     assert not condense(network, work)
+    assert not work.front.any()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_sweep_leaves_nothing_behind(seed):
+    network, work, *_ = prepare(seed, 4)
+    assert condense(network, work)
+    assert not work.front.any()
+    value, node_v = work.value.copy(), work.node_v.copy()
+    work.value[:], work.node_v[:], work.spans["stale"] = work.step_base, 0.0, True
+    assert condense(network, work)
+    np.testing.assert_array_equal(work.value, value)
+    np.testing.assert_array_equal(work.node_v, node_v)
 
 
 def test_ports_are_sorted_by_place():
@@ -166,3 +179,19 @@ def test_ports_are_sorted_by_place():
         place_ports(network, work)
         assert np.all(np.diff(network.ports["x_m"][work.order]) >= 0.0)
         assert work.spans["ports"][0] == len(network.ports)
+
+
+def test_ports_between_skeleton_nodes_come_first():
+    network, *_ = prepare(1, 3)
+    ports = np.concatenate([network.ports, network.ports[:2]])
+    ports["span"][-2:] = -1
+    network = network._replace(ports=ports)
+    work = new_work(network)
+    place_ports(network, work)
+    assert sorted(work.order[:2]) == [len(ports) - 2, len(ports) - 1]
+    assert work.spans["first_port"][0] == 2
+    assert work.spans["ports"][0] == len(ports) - 2
+    ports["span"][-1] = 0  # and a port may move onto a span
+    place_ports(network, work)
+    assert work.order[0] == len(ports) - 2
+    assert work.spans["ports"][0] == len(ports) - 1

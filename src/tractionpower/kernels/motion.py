@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from tractionpower.kernels.effort import greatest_effort
-from tractionpower.kernels.jit import inlined
+from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.tally import add_brake, add_resistance, add_traction, clear, mark
 from tractionpower.kernels.train_tables import (
     ACCELERATING,
@@ -49,7 +49,7 @@ _CUTS = 6
 _NEWTON_STEPS = 30
 
 
-@inlined
+@njit
 def run_step(tables, train, mover, tally, clock, cap_w, called):
     """Move a train over one step.
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tractionpower.kernels.jit import njit
+from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.ports import find_segment, linearise, port_current, port_integral
 from tractionpower.kernels.skeleton import factor_and_solve
 from tractionpower.kernels.spans import condense, expand
@@ -50,29 +50,28 @@ def solve_linear(network, work):
     bool
         Whether the matrix is positive definite. If not, nothing may be used.
     """
-    value, node_v = work.value, work.node_v
+    value, node_v, ports, order = work.value, work.node_v, network.ports, work.order
     for k in range(value.shape[0]):
         value[k] = work.step_base[k]
     for k in range(node_v.shape[0]):
         node_v[k] = 0.0
-    for p in range(network.ports.shape[0]):
-        port = network.ports[p]
-        if port.span < 0:
-            w = work.ports[p]
-            value[port.positive] += w.g
-            value[port.negative] += w.g
-            value[port.coupling] -= w.g
-            node_v[port.positive] -= w.j
-            node_v[port.negative] += w.j
+    between = 0
+    while between < order.shape[0] and ports[order[between]].span < 0:
+        port, w = ports[order[between]], work.ports[order[between]]
+        value[port.positive] += w.g
+        value[port.negative] += w.g
+        value[port.coupling] -= w.g
+        node_v[port.positive] -= w.j
+        node_v[port.negative] += w.j
+        between += 1
     if not condense(network, work):
         return False
     if not factor_and_solve(network.column_start, network.row, network.target, value, node_v):
         return False
     expand(network, work)
-    for p in range(network.ports.shape[0]):
-        port = network.ports[p]
-        if port.span < 0:
-            work.ports[p].u_next = node_v[port.positive] - node_v[port.negative]
+    for k in range(between):
+        port = ports[order[k]]
+        work.ports[order[k]].u_next = node_v[port.positive] - node_v[port.negative]
     return True
 
 
@@ -89,10 +88,10 @@ def solve_warm(network, work):
     iterations, worst
         Number of linear solutions, 0 when refused; largest imbalance of a port [A].
     """
-    ports, segments = network.ports, network.segments
+    ports = work.ports
     for p in range(ports.shape[0]):
-        w = work.ports[p]
-        w.start_segment = find_segment(segments, ports[p], w.u)
+        w = ports[p]
+        _bound(network.segments, network.ports[p], w)
         change = w.u - w.before_v
         w.before_v = w.u
         if abs(change) < SMOOTH_V:  # trains move on steadily: the line through the last two solutions saves an iteration
@@ -107,14 +106,23 @@ def solve_warm(network, work):
         if not solve_linear(network, work):
             return 0, worst
         for p in range(ports.shape[0]):
-            port, w = ports[p], work.ports[p]
-            if not abs(w.u_next) <= ABSURD_V or (port.demand and w.u_next < 0.5 * port.start_v):
+            w = ports[p]
+            if not w.lowest_v <= w.u_next < w.highest_v:
                 return 0, worst
             w.u = w.u_next
             w.i = w.g * w.u + w.j
-            if abs(find_segment(segments, port, w.u) - w.start_segment) > 1:
-                return 0, worst
     return 0, np.inf
+
+
+@inlined
+def _bound(segments, port, w):
+    """Set the range of voltages that a warm solution may take `port` to."""
+    s = find_segment(segments, port, w.u)
+    last = port.first_segment + port.segments - 1
+    w.lowest_v = segments[s - 1].from_v if s > port.first_segment + 1 else -ABSURD_V
+    if port.demand:
+        w.lowest_v = max(w.lowest_v, 0.5 * port.start_v)
+    w.highest_v = segments[s + 2].from_v if s + 2 <= last else ABSURD_V
 
 
 @njit

@@ -24,7 +24,7 @@ def factor_and_solve(column_start, row, target, value, potential):
         Whether the matrix is positive definite. If not, `potential` is not a solution.
     """
     n = column_start.shape[0] - 1
-    first = n + 1
+    below = value[n + 1 :]
     t = 0
     for k in range(n):
         d = value[k]
@@ -32,19 +32,19 @@ def factor_and_solve(column_start, row, target, value, potential):
             return False
         inverse = 1.0 / d
         b = potential[k]
-        for p in range(column_start[k], column_start[k + 1]):
-            factor = value[first + p] * inverse
-            for q in range(p, column_start[k + 1]):
-                value[target[t]] -= factor * value[first + q]
+        start, end = column_start[k], column_start[k + 1]
+        for p in range(start, end):
+            factor = below[p] * inverse
+            for q in range(p, end):
+                value[target[t]] -= factor * below[q]
                 t += 1
             potential[row[p]] -= factor * b
         potential[k] = b * inverse
         value[k] = inverse
     potential[n] = 0.0
     for k in range(n - 1, -1, -1):
-        inverse = value[k]
-        x = potential[k]
+        x = 0.0
         for p in range(column_start[k], column_start[k + 1]):
-            x -= value[first + p] * inverse * potential[row[p]]
-        potential[k] = x
+            x += below[p] * potential[row[p]]
+        potential[k] -= value[k] * x
     return True

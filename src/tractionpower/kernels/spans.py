@@ -3,43 +3,52 @@
 One sweep from left to right keeps a small *frontal matrix* over the terminals of the left end and the present front
 node of every conductor. Where a port stands, only the two conductors that it touches move on; the node left behind is
 eliminated at once. The cost is linear in the number of ports and independent of the conductors that nobody touches.
-Slots of the frontal matrix, lower triangle: terminals of the right end, of the left end, fronts, ground (a dummy).
+Slots of the frontal matrix, both triangles: terminals of the right end, of the left end, fronts, ground (a dummy).
 """
 
 from __future__ import annotations
 
-from tractionpower.kernels.jit import njit
+from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.tables import FIRST, NEXT, SHARED, SHARED_NODE_M
 
 
 @njit
 def place_ports(network, work):
     """Sort the ports of the spans by place and compute all that depends on their places only."""
-    _sort_ports(network.ports, work.order)
+    ports, conductor_work = network.ports, work.conductors
+    _sort_ports(ports, work.order)
     for s in range(network.spans.shape[0]):
         work.spans[s].ports = 0
         work.spans[s].stale = True
-    for c in range(network.conductors.shape[0]):
-        work.conductors[c].last_m = 0.0
-        work.conductors[c].nodes = 0
+    for c in range(conductor_work.shape[0]):
+        conductor_work[c].last_m = 0.0
+        conductor_work[c].nodes = 0
     for k in range(work.order.shape[0]):
         p = work.order[k]
-        port = network.ports[p]
-        span = work.spans[port.span]
+        port = ports[p]
+        if port.span < 0:
+            continue
+        span, length = work.spans[port.span], network.spans[port.span].length_m
         if span.ports == 0:
             span.first_port = k
         span.ports += 1
-        _attach(network, work, work.sides[p, 0], port.positive, port)
-        _attach(network, work, work.sides[p, 1], port.negative, port)
+        for m in range(2):
+            c = port.positive if m == 0 else port.negative
+            work.sides[p, m].conductor = c
+            _attach(network.conductors[c], conductor_work[c], work.sides[p, m], port.x_m, length)
     _finish_conductors(network, work)
 
 
 @njit
 def _sort_ports(ports, order):
     # Insertion: from one step to the next the order hardly changes.
-    for k in range(1, order.shape[0]):
+    last_span, last_x = -1, 0.0
+    for k in range(order.shape[0]):
         p = order[k]
         span, x = ports[p].span, ports[p].x_m
+        if span > last_span or (span == last_span and x >= last_x):
+            last_span, last_x = span, x
+            continue
         m = k - 1
         while m >= 0 and (ports[order[m]].span > span or (ports[order[m]].span == span and ports[order[m]].x_m > x)):
             order[m + 1] = order[m]
@@ -47,15 +56,12 @@ def _sort_ports(ports, order):
         order[m + 1] = p
 
 
-@njit
-def _attach(network, work, side, c, port):
-    conductor, w = network.conductors[c], work.conductors[c]
-    x = port.x_m
-    side.conductor = c
+@inlined
+def _attach(conductor, w, side, x, length):
     side.insertion = SHARED
     if conductor.ohm_per_m == 0.0 or x < SHARED_NODE_M:
         side.slot = conductor.left_slot
-    elif network.spans[port.span].length_m - x < SHARED_NODE_M:
+    elif length - x < SHARED_NODE_M:
         side.slot = conductor.right_slot
     else:
         side.slot = conductor.front_slot
@@ -102,6 +108,7 @@ def condense(network, work):
     condensed, condensed_b, value, node_v = work.condensed, work.condensed_b, work.value, work.node_v
     terminals, scatter, spans = network.terminals, network.scatter, network.spans
     if not _sweep(network, work):
+        _clear(work.front.reshape(work.front.size))  # what the sweep left there when it gave up
         return False
     for s in range(spans.shape[0]):
         if work.spans[s].ports > 0:
@@ -116,150 +123,166 @@ def condense(network, work):
 
 @njit
 def _sweep(network, work):
-    """Condense the stale spans; return whether all pivots were positive."""
-    front, b, rows = work.front, work.front_b, work.row
-    ports, sides, order = work.ports, work.sides, work.order
+    """Condense the stale spans; return whether all pivots were positive.
+
+    The frontal matrix is clear before each span and left so: what is eliminated or taken is cleared on the way.
+    """
+    front, b, rows, order = work.front, work.front_b, work.row, work.order
     conductors, conductor_work = network.conductors, work.conductors
-    condensed, condensed_b = work.condensed, work.condensed_b
     for s in range(network.spans.shape[0]):
         span, span_work = network.spans[s], work.spans[s]
         if span_work.ports == 0 or not span_work.stale:
             continue
-        first, ends = span.right_terminals, span.right_terminals + span.left_terminals
+        ends = span.right_terminals + span.left_terminals
         slots = ends + span.fronts
-        for p in range(slots + 1):
-            b[p] = 0.0
-            for q in range(p + 1):
-                front[p, q] = 0.0
+        _clear(b)
         row = span_work.first_row
         for k in range(span_work.first_port, span_work.first_port + span_work.ports):
             p = order[k]
             for m in range(2):
-                side = sides[p, m]
+                side = work.sides[p, m]
                 if side.insertion == FIRST:
                     _join(front, side.slot, conductors[side.conductor].left_slot, side.conductance_s)
                 elif side.insertion == NEXT:
-                    if not _advance(front, b, rows, row, side.slot, side.conductance_s, first, slots):
+                    if not _advance(front, b, rows[row], side.slot, side.conductance_s, slots):
                         return False
                     row += 1
-            i, j = sides[p, 0].slot, sides[p, 1].slot
-            _join(front, i, j, ports[p].g)
-            b[i] -= ports[p].j
-            b[j] += ports[p].j
-        for c in range(span.first_conductor + span.conductors - 1, span.first_conductor - 1, -1):
+            w, i, j = work.ports[p], work.sides[p, 0].slot, work.sides[p, 1].slot
+            _join(front, i, j, w.g)
+            b[i] -= w.j
+            b[j] += w.j
+        for k in range(span.conductors):
+            c = span.first_conductor + span.conductors - 1 - k
             if conductor_work[c].nodes > 0:
                 f = conductors[c].front_slot
                 _join(front, f, conductors[c].right_slot, conductor_work[c].end_s)
-                if not _eliminate(front, b, rows, row, f):
+                if not _eliminate(front, b, rows[row], f):
                     return False
                 row += 1
-        k = span.first_scatter
-        for i in range(ends):
-            condensed_b[span.first_terminal + i] = b[i]
-            for j in range(i + 1):
-                condensed[k] = front[i, j]
-                k += 1
+        for k in range(slots + 1):  # ground
+            front[k, slots] = front[slots, k] = 0.0
+        _take(front, b, ends, work.condensed[span.first_scatter :], work.condensed_b[span.first_terminal :])
         span_work.stale = False
     return True
 
 
-@njit
+@inlined
+def _clear(values):
+    for k in range(values.shape[0]):
+        values[k] = 0.0
+
+
+@inlined
+def _take(front, b, ends, condensed, condensed_b):
+    """Move what is left in the frontal matrix, the terminals, to where the span is kept."""
+    k = 0
+    for i in range(ends):
+        condensed_b[i] = b[i]
+        for j in range(i + 1):
+            condensed[k] = front[i, j]
+            front[i, j] = front[j, i] = 0.0
+            k += 1
+
+
+@inlined
 def _join(front, i, j, conductance):
     """Put a conductance between two slots."""
     front[i, i] += conductance
     front[j, j] += conductance
-    if i > j:
-        front[i, j] -= conductance
-    else:
-        front[j, i] -= conductance
+    front[i, j] -= conductance
+    front[j, i] -= conductance
 
 
-@njit
-def _advance(front, b, rows, row, f, conductance, first, slots):
+@inlined
+def _advance(front, b, row, f, conductance, slots):
     """Move the front of one conductor to a new node in the same slot `f`; eliminate the node that it leaves.
 
     With d the pivot, the new node has ``g F_ff/d`` on the diagonal and ``g F_fp/d`` towards slot p: no differences.
     """
-    d = front[f, f] + conductance
+    own, b_f = front[f, f], b[f]
+    d = own + conductance
     if not d > 0.0:
         return False
     inverse = 1.0 / d
+    for p in range(slots):
+        row[p] = front[f, p] * inverse
+    for p in range(slots):
+        entry = front[p, f]
+        if entry != 0.0:
+            for q in range(slots):
+                front[p, q] -= entry * row[q]
+            b[p] -= row[p] * b_f
     share = conductance * inverse
-    for p in range(first, f):
-        rows[row, p] = front[f, p] * inverse
-        front[f, p] *= share
-    for p in range(f + 1, slots):
-        rows[row, p] = front[p, f] * inverse
-        front[p, f] *= share
-    rows[row, f] = 0.0
-    for p in range(first, slots):
-        factor = rows[row, p]
-        if factor != 0.0:
-            for q in range(first, p + 1):
-                front[p, q] -= factor * d * rows[row, q]
-            b[p] -= factor * b[f]
-    front[f, f] *= share
-    rows[row, f] = -share
-    rows[row, rows.shape[1] - 1] = b[f] * inverse
-    b[f] *= share
+    for p in range(slots):
+        front[f, p] = conductance * row[p]
+        front[p, f] = conductance * row[p]
+    front[f, f] = own * share
+    row[f] = -share
+    row[row.shape[0] - 1] = b_f * inverse
+    b[f] = share * b_f
     return True
 
 
-@njit
-def _eliminate(front, b, rows, row, f):
-    """Eliminate slot `f`, the last one that is still coupled."""
-    d = front[f, f]
+@inlined
+def _eliminate(front, b, row, f):
+    """Eliminate slot `f`, the last one that is still coupled, and clear it."""
+    d, b_f = front[f, f], b[f]
     if not d > 0.0:
         return False
     inverse = 1.0 / d
     for p in range(f):
-        factor = front[f, p] * inverse
-        rows[row, p] = factor
-        if factor != 0.0:
-            for q in range(p + 1):
-                front[p, q] -= factor * front[f, q]
-            b[p] -= factor * b[f]
-    rows[row, rows.shape[1] - 1] = b[f] * inverse
+        row[p] = front[f, p] * inverse
+        front[f, p] = 0.0
+    for p in range(f):
+        entry = front[p, f]
+        if entry != 0.0:
+            front[p, f] = 0.0
+            for q in range(f):
+                front[p, q] -= entry * row[q]
+            b[p] -= row[p] * b_f
+    row[row.shape[0] - 1] = b_f * inverse
+    front[f, f] = 0.0
     return True
 
 
 @njit
 def expand(network, work):
     """From the potentials of the skeleton compute the voltages of all ports in spans [V]."""
-    x, rows, sides, order = work.front_b, work.row, work.sides, work.order
+    x, rows, order = work.front_b, work.row, work.order
     conductors, conductor_work, terminals, node_v = network.conductors, work.conductors, network.terminals, work.node_v
-    last = rows.shape[1] - 1
     for s in range(network.spans.shape[0]):
         span, span_work = network.spans[s], work.spans[s]
         if span_work.ports == 0:
             continue
-        first, ends = span.right_terminals, span.right_terminals + span.left_terminals
+        ends = span.right_terminals + span.left_terminals
         slots = ends + span.fronts
         for i in range(ends):
             x[i] = node_v[terminals[span.first_terminal + i]]
-        x[slots] = 0.0
-        row = span_work.first_row - 1
+        for i in range(ends, slots + 1):
+            x[i] = 0.0
+        row = span_work.first_row
         for c in range(span.first_conductor, span.first_conductor + span.conductors):
-            if conductors[c].ohm_per_m > 0.0:
-                x[conductors[c].front_slot] = 0.0
             row += conductor_work[c].nodes  # every inserted node is eliminated once: when left, or at the right end
         for c in range(span.first_conductor, span.first_conductor + span.conductors):
             if conductor_work[c].nodes > 0:
                 f = conductors[c].front_slot
-                v = rows[row, last]
-                for p in range(f):
-                    v -= rows[row, p] * x[p]
-                x[f] = v
                 row -= 1
-        for k in range(span_work.first_port + span_work.ports - 1, span_work.first_port - 1, -1):
-            p = order[k]
-            for m in range(1, -1, -1):
-                side = sides[p, m]
+                x[f] = _eliminated(rows[row], x, 0, f)
+        for k in range(span_work.ports):
+            p = order[span_work.first_port + span_work.ports - 1 - k]
+            for m in range(2):
+                side = work.sides[p, 1 - m]
                 side.node_v = x[side.slot]
                 if side.insertion == NEXT:
-                    v = rows[row, last]
-                    for q in range(first, slots):
-                        v -= rows[row, q] * x[q]
-                    x[side.slot] = v
                     row -= 1
-            work.ports[p].u_next = sides[p, 0].node_v - sides[p, 1].node_v
+                    x[side.slot] = _eliminated(rows[row], x, 0, slots)
+            work.ports[p].u_next = work.sides[p, 0].node_v - work.sides[p, 1].node_v
+
+
+@inlined
+def _eliminated(row, x, first, end):
+    """Return the potential of an eliminated node from those of the slots that it was coupled with."""
+    v = row[row.shape[0] - 1]
+    for q in range(first, end):
+        v -= row[q] * x[q]
+    return v

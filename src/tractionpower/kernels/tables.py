@@ -60,7 +60,8 @@ PORT = np.dtype(
         ("demand", "?"),  # a load or train, no source: the common load factor scales it
         ("floor_v", "f8"),  # outside floor and ceiling the demand cannot be served; floor 0: any voltage will do
         ("ceiling_v", "f8"),
-    ]
+    ],
+    align=True,
 )
 """Whatever feeds or draws: I(U) from the positive to the negative conductor, by segments."""
 
@@ -76,7 +77,8 @@ PORT_WORK = np.dtype(
         ("j", "f8"),  # current of the linearised port at zero voltage
         ("u_next", "f8"),
         ("i_next", "f8"),
-        ("start_segment", "i8"),
+        ("lowest_v", "f8"),  # range of a warm solution, outside which it is refused
+        ("highest_v", "f8"),
         ("full_scale", "f8"),  # scale before the demand was cut
     ]
 )
@@ -105,7 +107,8 @@ CONDUCTOR_WORK = np.dtype(
         ("front_v", "f8"),
         ("front_a", "f8"),
         ("open", "?"),  # whether the front has left the left end
-    ]
+    ],
+    align=True,
 )
 
 EDGE = np.dtype([("first", "i8"), ("second", "i8"), ("conductance_s", "f8")])
@@ -117,7 +120,8 @@ SPAN_WORK = np.dtype(
         ("ports", "i8"),
         ("first_row", "i8"),
         ("stale", "?"),  # whether a port has changed since the span was condensed
-    ]
+    ],
+    align=True,
 )
 
 
@@ -164,7 +168,7 @@ class Work(NamedTuple):
     sides: NDArray[np.void]  # shape (ports, 2)
     conductors: NDArray[np.void]
     spans: NDArray[np.void]
-    order: NDArray[np.int64]  # span ports by span and place
+    order: NDArray[np.int64]  # ports by span and place, those between skeleton nodes first
     step_base: NDArray[np.float64]  # skeleton values with the spans that carry no port
     value: NDArray[np.float64]
     node_v: NDArray[np.float64]  # potentials of the skeleton nodes, ground last
@@ -183,13 +187,12 @@ def new_work(network: Network) -> Work:
         spans = network.spans
         slots = int(np.max(spans["left_terminals"] + spans["right_terminals"] + spans["fronts"])) + 1
     rows = 2 * ports + len(network.conductors) + 1
-    order = np.flatnonzero(network.ports["span"] >= 0)
     work = Work(
         ports=np.zeros(ports, PORT_WORK),
         sides=np.zeros((ports, 2), SIDE_WORK),
         conductors=np.zeros(len(network.conductors), CONDUCTOR_WORK),
         spans=np.zeros(len(network.spans), SPAN_WORK),
-        order=order.astype(np.int64),
+        order=np.argsort(network.ports["span"], kind="stable").astype(np.int64),
         step_base=network.base.copy(),
         value=network.base.copy(),
         node_v=np.zeros(nodes + 1),

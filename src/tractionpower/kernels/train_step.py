@@ -38,14 +38,19 @@ def wish(tables, state, k, t, h):
     train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
     called = (state.arrived_s, state.left_s)
     state.trials[k] = mover
-    if train.drive != SERIES_MOTORS:
-        run_step(tables, train, trial, state.wishes[k], (t, h), np.inf, called)
-        return
-    _switch_relay(train, trial, t)
-    best = choose_notch(tables, train, trial, t)
-    trial.notch = best
-    run_step(tables, train, trial, state.wishes[k], (t, h), np.inf, called)
+    if train.drive == SERIES_MOTORS:
+        _switch_relay(train, trial, t)
+        trial.notch = choose_notch(tables, train, trial, t)
     tally = state.wishes[k]
+    run_step(tables, train, trial, tally, (t, h), np.inf, called)
+    if train.drive == SERIES_MOTORS:
+        _hold_notch(tables, train, mover, trial, tally, t)
+
+
+@inlined
+def _hold_notch(tables, train, mover, trial, tally, t):
+    """Hold the notch of the trial, or a lower one where the train wishes less than it gives."""
+    best = trial.notch
     need_w = tally.line_j / tally.moving_s if tally.moving_s > 0.0 else 0.0
     is_full = tally.wished_ns >= train.start_n * tally.moving_s * (1.0 - _FULL)
     if need_w > 0.0 and not (is_full or trial.relay_open):
