@@ -54,6 +54,8 @@ def test_data_travel_in_the_wheel(wheel):
         folders = {path.parent.name for path in (ROOT / kind).glob(f"*/{file}")}
         assert folders
         assert {f"tractionpower/_data/{kind}/{folder}/{file}" for folder in folders} <= set(names)
+    for path in (ROOT / "rollingstock").glob("*/*.yaml"):
+        assert f"tractionpower/_data/rollingstock/{path.parent.name}/{path.name}" in names
     assert "tractionpower/data/limits.csv" in names
     assert any(name.endswith("licenses/LICENSE") for name in names)
 
@@ -80,6 +82,10 @@ def test_a_shipped_line_runs_and_the_cases_are_met_in_an_empty_folder(command, t
     assert "the lines that ship with tractionpower" in ran.stderr
     assert "compiling the kernels" in ran.stderr
     assert (folder / "reports" / "two-substations" / "run.json").is_file()
+    ran = call(command, "journey", "two-substations/trains.yaml", "--train", "2", cwd=folder, env=environment)
+    assert "00:09:04" in ran.stdout
+    call(command, "curves", "en57", cwd=folder, env=environment)
+    assert (folder / "reports" / "curves" / "en57.png").is_file()
     ran = call(command, "validate", cwd=folder, env=environment)
     assert ", 0 missed" in ran.stdout
     assert [path.name for path in folder.iterdir()] == ["reports"]
