@@ -58,7 +58,6 @@ def test_coasting(step_s, tolerance):
     for v in (45.0, 35.0, 32.0):
         time, distance = (220e3 * x for x in coasting(a, b, c, 50.0, v))
         if distance < 5000.0:
-            assert column(found, "time_s", ("v_mps", v)) != 0.0
             rows = found.rows[::-1]
             assert np.interp(v, rows["v_mps"], rows["time_s"]) == pytest.approx(time, abs=0.02 * step_s + tolerance)
             assert np.interp(v, rows["v_mps"], rows["s_m"]) == pytest.approx(distance, abs=step_s + tolerance)
@@ -174,7 +173,7 @@ def test_a_train_enters_within_a_step():
     scenario = make_trains(2.0, time=10.25, speed_kmh=36.0, limits=[(-1.0, 3.0, 36.0)], auxiliaries={"power_kw": 100.0})
     stepper = Stepper(scenario)
     stepper.time_s = 8.0
-    before, step = stepper.step(3000.0), None
+    before = stepper.step(3000.0)
     stepper.step(3000.0)
     assert (before["phase"], before["power_w"]) == (WAITING, 0.0)
     assert stepper.mover["status"] != RUNNING

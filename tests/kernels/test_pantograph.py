@@ -192,4 +192,4 @@ def test_power_over_voltage_is_that_at_the_wheel_whatever_the_efficiency():
     table = [{"voltage_v": 2000.0, "power_kw": 1000.0}, {"voltage_v": 3000.0, "power_kw": 3000.0}]
     drive = INVERTER | {"efficiency": None, "efficiency_map": grid, "power_over_voltage": table, "max_current_a": 9000.0}
     rows = run(20.0, drive=drive, voltage_v=2500.0, resistance={"c_n_per_kmh2": 1.0}).rows
-    assert rows["wheel_w"].max() == pytest.approx(2000e3, rel=2e-3)  # the share is that at the start of the step
+    assert rows["wheel_w"].max() == pytest.approx(2000e3, rel=1e-4)

@@ -151,10 +151,10 @@ def test_the_relay_opens_after_its_delay_and_lets_start_again():
     for n in range(60):
         voltage = 1900.0 if 10 <= n < 20 else 2200.0 if 20 <= n < 30 else 3000.0
         lived.append(stepper.step(voltage)["traction_n"] > 0.0)
-    # The low voltage of step 10 is known from 11 on, asks for 3 s; 2200 V close nothing, 3000 V from step 30 do at 34.
-    assert lived == [True] * 14 + [False] * 20 + [True] * 26
+    # Three seconds below 2000 V are over at 13; 2200 V close nothing, three seconds of 3000 V do at 33.
+    assert lived == [True] * 13 + [False] * 20 + [True] * 27
     short = Stepper(make_trains(30.0, drive=drive, speed_kmh=36.0))
-    assert all(short.step(1900.0 if n % 4 < 3 else 2500.0)["traction_n"] > 0.0 for n in range(40))
+    assert all(short.step(1900.0 if n % 4 < 2 else 2500.0)["traction_n"] > 0.0 for n in range(40))
 
 
 def test_low_voltage_bites_hard():

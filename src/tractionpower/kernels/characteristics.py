@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from tractionpower.kernels.effort import efficiency_at, greatest_effort
 from tractionpower.kernels.jit import njit
-from tractionpower.kernels.pantograph import auxiliary_current, traction
+from tractionpower.kernels.pantograph import auxiliary_current, permitted_effort
 from tractionpower.kernels.series_motors import choose_notch
-from tractionpower.kernels.train_tables import INVERTER, SERIES_MOTORS
+from tractionpower.kernels.train_step import free_current
+from tractionpower.kernels.train_tables import SERIES_MOTORS
 
 _CRAWL_MPS = 1e-3
 _NO_LIMIT_A = 1e300
@@ -26,11 +26,6 @@ def trace(tables, movers, u, speed, effort, current):
         v = max(speed[n], _CRAWL_MPS)  # power and effort are compared by the speed
         mover.v_mps = v
         if train.drive == SERIES_MOTORS:
-            mover.notch = choose_notch(tables, train, mover, 0.0)
-        most, _, _ = greatest_effort(tables, train, mover, v)
-        need_w = most * v
-        if train.drive == INVERTER:
-            need_w /= efficiency_at(tables, train, v, 1.0)
-        power, taken, _, _ = traction(tables, train, mover, need_w, (u, _NO_LIMIT_A), (v, 0.0, 0.0))
-        effort[n] = most * power / need_w if need_w > 0.0 else 0.0
-        current[n] = taken + auxiliary_current(train, u)
+            mover.notch = choose_notch(tables, train, mover, 0.0, free_current(tables, train, mover))
+        effort[n], current[n], _, _ = permitted_effort(tables, train, mover, v, (u, _NO_LIMIT_A))
+        current[n] += auxiliary_current(train, u)

@@ -7,6 +7,7 @@ from tractionpower.kernels.train_tables import (
     BY_ADHESION,
     BY_DRIVE,
     BY_NOTHING,
+    BY_VOLTAGE,
     INVERTER,
     NO_DRIVE,
     SERIES_MOTORS,
@@ -57,7 +58,7 @@ def greatest_effort(tables, train, mover, v):
             slope, by = -2.0 * effort / v, BY_DRIVE
     elif train.drive == SERIES_MOTORS:
         if mover.relay_open:
-            return 0.0, 0.0, BY_DRIVE
+            return 0.0, 0.0, BY_VOLTAGE
         notch = tables.notches[train.first_notch + mover.notch]
         effort, by = tables.motor[notch.first_point + notch.points - 1].effort_n, BY_DRIVE
     elif train.drive == NO_DRIVE:
@@ -66,11 +67,17 @@ def greatest_effort(tables, train, mover, v):
         curve = tables.curves[train.first_curve + train.curves - 1]
         effort, slope = look_up(tables.points, curve.first_effort, curve.efforts, v)
         by = BY_NOTHING if effort >= train.start_n else BY_DRIVE
-    shifted = v + train.adhesion_b_mps
-    adhesion = train.adhesive_n * (train.adhesion_a_mps / shifted + train.adhesion_c)
+    adhesion = adhesion_limit(train, v)
     if adhesion < effort:
+        shifted = v + train.adhesion_b_mps
         return adhesion, -train.adhesive_n * train.adhesion_a_mps / (shifted * shifted), BY_ADHESION
     return effort, slope, by
+
+
+@inlined
+def adhesion_limit(train, v):
+    """Return the effort that adhesion permits at the speed `v` [m/s]: mu = a / (v + b) + c (Curtius and Kniffler) [N]."""
+    return train.adhesive_n * (train.adhesion_a_mps / (v + train.adhesion_b_mps) + train.adhesion_c)
 
 
 @inlined

@@ -49,10 +49,10 @@ def cache_folder() -> Path | None:
     return folder
 
 
-def is_compiled() -> bool:
-    """Tell whether compiled kernels of this version lie in the cache already."""
+def is_compiled(kernel: str) -> bool:
+    """Tell whether the outermost function `kernel` of this version lies compiled in the cache already."""
     folder = cache_folder()
-    return folder is not None and any(folder.rglob("*.advance-*.nbc"))
+    return folder is not None and any(folder.rglob(f"*.{kernel}-*.nbc"))
 
 
 FLAGS = {"error_model": "numpy", "nogil": True, "_nrt": False}

@@ -44,7 +44,7 @@ HERE_M = 1e-6
 """A front this near to a place is there [m]."""
 
 _ON_CEILING = 1e-10
-_MOST_PHASES = 200
+_MOST_IDLE = 1000
 _CUTS = 6
 _NEWTON_STEPS = 30
 
@@ -67,8 +67,10 @@ def run_step(tables, train, mover, tally, clock, cap_w, called):
     """
     clear(tally)
     now, end = clock[0], clock[0] + clock[1]
-    for _ in range(_MOST_PHASES):
+    idle = 0
+    while idle < _MOST_IDLE:  # arrivals and departures take no time; a phase does
         left = end - now
+        idle += 1
         if left <= TINY_S or mover.status == GONE:
             break
         if mover.status == OUTSIDE:
@@ -85,6 +87,8 @@ def run_step(tables, train, mover, tally, clock, cap_w, called):
             spent = _stand(tables, train, mover, tally, (now, left), called)
         tally.on_line_s += spent
         now += spent
+        if spent > TINY_S:
+            idle = 0
 
 
 @inlined
@@ -180,7 +184,7 @@ def _balance(tables, train, mover, track, tau, cap_w):
     """
     v = mover.v_mps
     half = 0.5 * tau / train.inertia_kg
-    mean, low, high = v, -1.0, np.inf
+    mean, low, high = v, -1.0, v + half * train.start_n + 1e3
     effort, resistance, by = 0.0, 0.0, BY_DRIVE
     for _ in range(_NEWTON_STEPS):
         effort, slope, by = _effort(tables, train, mover, mean, cap_w)
@@ -190,7 +194,7 @@ def _balance(tables, train, mover, track, tau, cap_w):
             low = mean
         else:
             high = mean
-        after = max(mean + gap / (1.0 - half * (slope - rise)), 0.0)
+        after = max(mean + gap / max(1.0 - half * (slope - rise), 1e-3), 0.0)  # tables may rise with the speed
         if abs(after - mean) <= 1e-12 * (1.0 + v):
             mean = after
             break
@@ -209,6 +213,7 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
     effort = resistance = acceleration = spent = speed = 0.0
     by = BY_DRIVE
     for _ in range(_CUTS):  # a way that is cut short has another middle and mean speed
+        thought = distance
         track = additional_resistance(tables, train, mover, mover.s_m + 0.5 * distance, distance)
         mean, effort, resistance, by = _balance(tables, train, mover, track, meant, cap_w)
         if v == 0.0 and mean <= 0.0:
@@ -222,7 +227,7 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
         distance = 0.5 * (v + speed) * spent
         if free:
             distance, spent, speed = _meet_ceiling(tables, train, mover, acceleration, (distance, spent, speed))
-        if abs(spent - meant) <= TINY_S:
+        if abs(spent - meant) <= TINY_S and abs(distance - thought) <= 0.01 + 1e-3 * distance:
             break
         meant = max(spent, TINY_S)
     mark(tally, ACCELERATING if effort > 0.0 else _unpowered(train), BY_NOTHING if effort >= train.start_n else by)

@@ -8,17 +8,17 @@ sign; standing, cruising, braking and the neighbourhood of the balance are run i
 
 from __future__ import annotations
 
-from tractionpower.kernels.effort import efficiency_at, greatest_effort, look_up
+import numpy as np
+
+from tractionpower.kernels.effort import look_up
 from tractionpower.kernels.jit import njit
 from tractionpower.kernels.journey import ARRIVED, OUT_OF_ROWS, STUCK, STUCK_S
-from tractionpower.kernels.pantograph import auxiliary_current, traction
+from tractionpower.kernels.pantograph import auxiliary_current, permitted_effort
 from tractionpower.kernels.series_motors import choose_notch
-from tractionpower.kernels.train_step import settle, wish
+from tractionpower.kernels.train_step import free_current, settle, wish
 from tractionpower.kernels.train_tables import (
     ACCELERATING,
-    BY_NOTHING,
     COASTING,
-    INVERTER,
     NO_DRIVE,
     RUNNING,
     SERIES_MOTORS,
@@ -65,18 +65,11 @@ def run_over_speed(tables, state, k, clock, voltage, rows):
 
 @njit
 def _rates(tables, train, mover, v, s, u):
-    """Return acceleration [m/s2] at greatest effort, and as powers [W]: traction from the line, at the wheel, in resistors."""
-    speed = max(v, _CRAWL_MPS)
-    effort, _, _ = greatest_effort(tables, train, mover, speed)
-    need_w = effort * speed
-    if train.drive == INVERTER:
-        need_w /= efficiency_at(tables, train, speed, 1.0)
-    power, current, resistor_w, _ = traction(tables, train, mover, need_w, _lines(tables, train, mover, u), (speed, 0.0, 0.0))
-    if need_w > 0.0:
-        effort *= power / need_w
+    """Return acceleration at greatest effort [m/s2]; power from the line, at the wheel, in resistors [W], effort [N]."""
+    effort, current, resistor_w, _ = permitted_effort(tables, train, mover, max(v, _CRAWL_MPS), _lines(tables, train, mover, u))
     constant, drag = additional_resistance(tables, train, mover, s, 0.0)
     resistance = train.a_n + constant + (train.b_ns_per_m + (train.c_ns2_per_m2 + drag) * v) * v
-    return (effort - resistance) / train.inertia_kg, (u * current, effort * v, resistor_w)
+    return (effort - resistance) / train.inertia_kg, (u * current, effort * v, resistor_w, effort)
 
 
 @njit
@@ -85,10 +78,12 @@ def _speed_step(tables, state, k, clock, u, row):
     now, dv = clock
     train, mover = tables.trains[k], state.movers[k]
     gap = _ceiling(tables, train, mover, mover.s_m) - mover.v_mps * mover.v_mps
-    if mover.relay_open or gap <= 1e-6 * (1.0 + mover.v_mps * mover.v_mps) or _is_at_call(tables, train, mover):
+    if train.drive == SERIES_MOTORS and (mover.relay_open or u < train.relay_off_v or mover.relay_since_s < np.inf):
+        return 0.0
+    if gap <= 1e-6 * (1.0 + mover.v_mps * mover.v_mps) or _is_at_call(tables, train, mover):
         return 0.0
     if train.drive == SERIES_MOTORS:
-        notch = choose_notch(tables, train, mover, now)
+        notch = choose_notch(tables, train, mover, now, free_current(tables, train, mover))
         if notch != mover.notch:
             mover.notch, mover.notch_since_s = notch, now
     first, _ = _rates(tables, train, mover, mover.v_mps, mover.s_m, u)
@@ -113,8 +108,10 @@ def _speed_step(tables, state, k, clock, u, row):
     if not time > 0.0:
         return 0.0
     v = mover.v_mps
-    _write(train, row, (now, time, distance), (v, v + share * change), u, work)
-    row.s_m, row.limited_by = mover.s_m, _limited_by(tables, train, mover, u)
+    lines = _lines(tables, train, mover, u)
+    _write(train, row, (now, time, distance), (v, v + share * change), lines, work)
+    _, _, _, row.limited_by = permitted_effort(tables, train, mover, max(v, _CRAWL_MPS), lines)
+    row.s_m = mover.s_m
     note_calls(tables, train, mover, (state.arrived_s, state.left_s), (now, distance, share * change / time))
     mover.s_m += distance
     mover.v_mps = v + share * change
@@ -125,19 +122,6 @@ def _speed_step(tables, state, k, clock, u, row):
 @njit
 def _lines(tables, train, mover, u):
     return u, line_current_limit(tables, train, mover, True)
-
-
-@njit
-def _limited_by(tables, train, mover, u):
-    speed = max(mover.v_mps, _CRAWL_MPS)
-    effort, _, by = greatest_effort(tables, train, mover, speed)
-    need_w = effort * speed
-    if train.drive == INVERTER:
-        need_w /= efficiency_at(tables, train, speed, 1.0)
-    power, _, _, cut = traction(tables, train, mover, need_w, _lines(tables, train, mover, u), (speed, 0.0, 0.0))
-    if power < need_w * (1.0 - 1e-9):
-        return cut
-    return BY_NOTHING if effort >= train.start_n else by
 
 
 @njit
@@ -187,13 +171,13 @@ def _integrate(tables, train, mover, change, u):
     middle, end = v + 0.5 * change, v + change
     a2, p2 = _rates(tables, train, mover, middle, s + 0.5 * change * v / a1, u)
     if a2 * a1 <= 0.0:
-        return 0.0, 0.0, (0.0, 0.0, 0.0)
+        return 0.0, 0.0, (0.0, 0.0, 0.0, 0.0)
     a3, p3 = _rates(tables, train, mover, middle, s + 0.5 * change * middle / a2, u)
     if a3 * a1 <= 0.0:
-        return 0.0, 0.0, (0.0, 0.0, 0.0)
+        return 0.0, 0.0, (0.0, 0.0, 0.0, 0.0)
     a4, p4 = _rates(tables, train, mover, end, s + change * middle / a3, u)
     if a4 * a1 <= 0.0 or abs(a4) < 0.25 * BALANCE_MPS2:
-        return 0.0, 0.0, (0.0, 0.0, 0.0)
+        return 0.0, 0.0, (0.0, 0.0, 0.0, 0.0)
     sixth = change / 6.0
     return (
         sixth * (1.0 / a1 + 2.0 / a2 + 2.0 / a3 + 1.0 / a4),
@@ -202,22 +186,24 @@ def _integrate(tables, train, mover, change, u):
             sixth * (p1[0] / a1 + 2.0 * p2[0] / a2 + 2.0 * p3[0] / a3 + p4[0] / a4),
             sixth * (p1[1] / a1 + 2.0 * p2[1] / a2 + 2.0 * p3[1] / a3 + p4[1] / a4),
             sixth * (p1[2] / a1 + 2.0 * p2[2] / a2 + 2.0 * p3[2] / a3 + p4[2] / a4),
+            sixth * (p1[3] / a1 + 2.0 * p2[3] / a2 + 2.0 * p3[3] / a3 + p4[3] / a4),
         ),
     )
 
 
 @njit
-def _write(train, row, way, speeds, u, work):
+def _write(train, row, way, speeds, lines, work):
     now, time, distance = way
-    line_j, wheel_j, resistor_j = work
-    auxiliary_w = u * auxiliary_current(train, u)
+    line_j, wheel_j, resistor_j, effort_ns = work
+    u, line_a = lines
+    auxiliary_w = u * min(auxiliary_current(train, u), line_a)
     row.time_s, row.v_mps = now, speeds[0]
     row.phase = ACCELERATING if wheel_j > 0.0 else COASTING if train.drive == NO_DRIVE else UNPOWERED
     row.acceleration_mps2 = (speeds[1] - speeds[0]) / time
-    row.traction_n, row.wished_n = wheel_j / distance, train.start_n
+    row.traction_n, row.wished_n = effort_ns / time, train.start_n
     row.resistance_n = row.traction_n - train.inertia_kg * (speeds[1] ** 2 - speeds[0] ** 2) / (2.0 * distance)
     row.voltage_v, row.auxiliary_w, row.wheel_w = u, auxiliary_w, wheel_j / time
     row.power_w = line_j / time + auxiliary_w
-    row.current_a = row.power_w / u
+    row.current_a = row.power_w / u if u > 0.0 else 0.0
     row.starting_resistor_w = resistor_j / time
     row.drive_loss_w = (line_j - resistor_j) / time - row.wheel_w

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tractionpower.kernels.effort import efficiency_at, greatest_effort
+from tractionpower.kernels.effort import adhesion_limit, efficiency_at, greatest_effort
 from tractionpower.kernels.jit import inlined
 from tractionpower.kernels.train_tables import BY_NOTHING, INVERTER
 
@@ -43,11 +43,11 @@ def add_traction(tables, train, mover, tally, effort, way):
 
 @inlined
 def add_brake(train, tally, effort, distance, spent):
-    """Add the brakes; the electric one gives what it can at the mean speed."""
+    """Add the brakes; the electric one gives what it and adhesion can at the mean speed."""
     mean = distance / spent if spent > 0.0 else 0.0
     electric = 0.0
     if mean > train.brake_from_mps and mean > 0.0:
-        electric = min(effort, train.brake_n, train.brake_w / mean)
+        electric = min(effort, train.brake_n, train.brake_w / mean, adhesion_limit(train, mean))
     tally.brake_ns += effort * spent
     tally.brake_j += effort * distance
     tally.electric_ns += electric * spent

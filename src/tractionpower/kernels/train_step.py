@@ -9,8 +9,8 @@ import numpy as np
 
 from tractionpower.kernels.jit import inlined
 from tractionpower.kernels.motion import run_step
-from tractionpower.kernels.pantograph import traction, write_row
-from tractionpower.kernels.series_motors import at_full, choose_notch, lowest_notch
+from tractionpower.kernels.pantograph import auxiliary_current, current_limit, traction, write_row
+from tractionpower.kernels.series_motors import at_full, choose_notch, lowest_notch, notch_below
 from tractionpower.kernels.train_tables import (
     DWELLING,
     HOLDING,
@@ -39,8 +39,8 @@ def wish(tables, state, k, t, h):
     called = (state.arrived_s, state.left_s)
     state.trials[k] = mover
     if train.drive == SERIES_MOTORS:
-        _switch_relay(train, trial, t)
-        trial.notch = choose_notch(tables, train, trial, t)
+        _switch_relay(train, trial, t, h)
+        trial.notch = choose_notch(tables, train, trial, t, free_current(tables, train, trial))
     tally = state.wishes[k]
     run_step(tables, train, trial, tally, (t, h), np.inf, called)
     if train.drive == SERIES_MOTORS:
@@ -51,36 +51,49 @@ def wish(tables, state, k, t, h):
 def _hold_notch(tables, train, mover, trial, tally, t):
     """Hold the notch of the trial, or a lower one where the train wishes less than it gives."""
     best = trial.notch
+    trial.below = -1
     need_w = tally.line_j / tally.moving_s if tally.moving_s > 0.0 else 0.0
     is_full = tally.wished_ns >= train.start_n * tally.moving_s * (1.0 - _FULL)
     if need_w > 0.0 and not (is_full or trial.relay_open):
-        speeds = mean_speeds(train, mover, tally)
+        speeds = midpoint_of(train, mover, tally)
         _, most, _ = at_full(tables, tables.notches[train.first_notch + best], mover.voltage_v, speeds)
         if need_w < most:
             trial.notch = lowest_notch(tables, train, mover, best, need_w, speeds)
+            trial.below = notch_below(tables, train, mover, trial.notch, need_w, speeds)
     if trial.notch != mover.notch:
         trial.notch_since_s = t
 
 
 @inlined
-def mean_speeds(train, mover, tally):
-    """Return what the mean speed of a step follows from: speed [m/s], half of time over inertia [s/kg], resistance [N].
+def midpoint_of(train, mover, tally):
+    """Return speed at the start [m/s], half of time over inertia [s/kg], resistance [N], mean speed [m/s] of a step.
 
-    The resistance is that of the trial, whose effort differs from the one permitted by what the voltage takes away.
+    The mean speed of another effort F follows from the first three, v + (F - W) t / 2 M. The resistance is that of the
+    trial, whose effort differs from the one permitted by what the voltage takes away.
     """
-    resistance = tally.resistance_j / tally.moved_m if tally.moved_m > 0.0 else 0.0
-    return mover.v_mps, 0.5 * tally.moving_s / train.inertia_kg, resistance
+    if tally.moved_m <= 0.0:
+        return mover.v_mps, 0.0, 0.0, mover.v_mps
+    mean = tally.moved_m / tally.moving_s
+    return mover.v_mps, 0.5 * tally.moving_s / train.inertia_kg, tally.resistance_j / tally.moved_m, mean
 
 
 @inlined
-def _switch_relay(train, mover, t):
-    """Open or close the undervoltage relay by the last voltage; closing starts in the first grouping."""
+def free_current(tables, train, mover):
+    """Return the current that limits leave for traction at the last voltage [A]."""
+    u = mover.voltage_v
+    limit, _ = current_limit(train, u, line_current_limit(tables, train, mover, True))
+    return max(limit - auxiliary_current(train, u), 0.0)
+
+
+@inlined
+def _switch_relay(train, mover, t, h):
+    """Open or close the undervoltage relay by the voltage of the step before; closing starts in the first grouping."""
     u = mover.voltage_v
     asks = u > train.relay_on_v if mover.relay_open else u < train.relay_off_v
     if not asks:
         mover.relay_since_s = np.inf
         return
-    mover.relay_since_s = min(mover.relay_since_s, t)
+    mover.relay_since_s = min(mover.relay_since_s, t - h)
     if t - mover.relay_since_s >= train.relay_s:
         mover.relay_open = not mover.relay_open
         mover.relay_since_s = np.inf
@@ -96,10 +109,11 @@ def settle(tables, state, k, clock, u, row):
     moving = wished.moving_s / h  # limits hold while the train moves, powers of a row are means of the step
     need_w = wished.line_j / wished.moving_s if moving > 0.0 else 0.0
     lines = (u, line_current_limit(tables, train, mover, moving > 0.0))
-    got_w, current, resistor_w, by = traction(tables, train, trial, need_w, lines, mean_speeds(train, mover, wished))
+    trial.limit = mover.limit
+    got_w, current, resistor_w, by = traction(tables, train, trial, need_w, lines, midpoint_of(train, mover, wished))
     row.time_s, row.s_m, row.v_mps = t, mover.s_m, mover.v_mps
     limited_by = wished.limited_by
-    if got_w < need_w * (1.0 - _SAME):
+    if not got_w >= need_w * (1.0 - _SAME):
         _retry(tables, state, k, clock, got_w * moving)
         limited_by = by
     else:
@@ -157,6 +171,8 @@ def _restart(tables, state, k):
         state.left_s[train.first_stop + n] = np.nan
         if n > mover.stop or mover.status != STANDING:
             state.arrived_s[train.first_stop + n] = np.nan
-    notch, since, is_open, asked = trial.notch, trial.notch_since_s, trial.relay_open, trial.relay_since_s
+    notch, below, since = trial.notch, trial.below, trial.notch_since_s
+    is_open, asked = trial.relay_open, trial.relay_since_s
     state.trials[k] = mover
-    trial.notch, trial.notch_since_s, trial.relay_open, trial.relay_since_s = notch, since, is_open, asked
+    trial.notch, trial.below, trial.notch_since_s = notch, below, since
+    trial.relay_open, trial.relay_since_s = is_open, asked

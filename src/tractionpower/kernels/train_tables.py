@@ -94,8 +94,8 @@ LINE_LIMIT = np.dtype([("from_m", "f8"), ("max_a", "f8"), ("standstill_a", "f8")
 POINT = np.dtype([("x", "f8"), ("y", "f8")])
 """A point of a curve."""
 
-CURVE = np.dtype([("voltage_v", "f8"), ("first_effort", "i8"), ("efforts", "i8"), ("first_current", "i8"), ("currents", "i8")])
-"""Effort [N] and current [A] over speed [m/s] at one voltage, as points."""
+CURVE = np.dtype([("voltage_v", "f8"), ("first_effort", "i8"), ("efforts", "i8"), ("first_loss", "i8"), ("losses", "i8")])
+"""Effort [N] and losses between line and wheel [W] over speed [m/s] at one voltage, as points."""
 
 NOTCH = np.dtype(
     [
@@ -153,6 +153,7 @@ MOVER = np.dtype(
         ("leave_s", "f8"),  # when it may leave the stop it stands at
         ("limit", "i8"),
         ("notch", "i8"),
+        ("below", "i8"),  # notch that takes turns with it, -1: off
         ("notch_since_s", "f8"),
         ("relay_open", "?"),
         ("relay_since_s", "f8"),  # since when the voltage asks for the other position; infinite: it does not

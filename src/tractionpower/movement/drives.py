@@ -23,6 +23,10 @@ NO_LIMIT = 1e300
 """Stands for no limit in the tables; infinite would make NaN when multiplied by zero."""
 
 
+Curve = Sequence[tuple[float, float]]
+"""Points of a curve over speed [m/s]."""
+
+
 class Limited(Protocol):
     """A drive whose current may be limited."""
 
@@ -177,16 +181,22 @@ def _table(drive: TableDrive, formation: Formation, voltages: SystemVoltages, po
     rows = []
     for volts in sorted(efforts):
         first_effort, count = pools.points.add(efforts[volts])
-        first_current, also = pools.points.add(currents[volts])
-        rows.append((volts, first_effort, count, first_current, also))
+        first_loss, also = pools.points.add(_losses(volts, efforts[volts], currents[volts]))
+        rows.append((volts, first_effort, count, first_loss, also))
     first, count = pools.curves.add(rows)
     start = max(effort for points in efforts.values() for _, effort in points)
     return {"drive": TABLE, "start_n": start, "first_curve": first, "curves": count}
 
 
-def _by_voltage(
-    points: Iterable[tuple[float | None, float, float]], nominal_v: float, units: int
-) -> dict[float, Sequence[tuple[float, float]]]:
+def _losses(volts: float, efforts: Curve, currents: Curve) -> Curve:
+    """Return losses [W] at all speeds of two curves; straight between them, so that no power comes out of nothing."""
+    effort, current = np.array(efforts).T, np.array(currents).T
+    speeds = np.union1d(effort[0], current[0])
+    lost = volts * np.interp(speeds, current[0], current[1]) - np.interp(speeds, effort[0], effort[1]) * speeds
+    return list(zip(speeds.tolist(), lost.tolist(), strict=True))
+
+
+def _by_voltage(points: Iterable[tuple[float | None, float, float]], nominal_v: float, units: int) -> dict[float, Curve]:
     """Return the curves over speed [m/s] by voltage; points without one hold at nominal voltage."""
     found: dict[float, list[tuple[float, float]]] = defaultdict(list)
     for volts, kmh, value in points:
