@@ -212,6 +212,7 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
     v, meant = mover.v_mps, tau
     effort = resistance = acceleration = spent = speed = 0.0
     by = BY_DRIVE
+    near = 1e-3 if train.spread_m == 0.0 else 0.1  # slopes change little under a long train
     for _ in range(_CUTS):  # a way that is cut short has another middle and mean speed
         thought = distance
         track = additional_resistance(tables, train, mover, mover.s_m + 0.5 * distance, distance)
@@ -227,7 +228,7 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
         distance = 0.5 * (v + speed) * spent
         if free:
             distance, spent, speed = _meet_ceiling(tables, train, mover, acceleration, (distance, spent, speed))
-        if abs(spent - meant) <= TINY_S and abs(distance - thought) <= 0.01 + 1e-3 * distance:
+        if abs(spent - meant) <= TINY_S and abs(distance - thought) <= near * (0.1 + distance):
             break
         meant = max(spent, TINY_S)
     mark(tally, ACCELERATING if effort > 0.0 else _unpowered(train), BY_NOTHING if effort >= train.start_n else by)

@@ -68,9 +68,9 @@ def _can_be_held(tables, notch, v, u):
 def choose_notch(tables, train, mover, t, free_a):
     """Return the notch for the greatest effort at the speed and the last voltage of `mover`.
 
-    A notch is left for a higher one that gives 2 % more effort. For a lower one it is left if that gives a quarter more, or
-    the same with a fifth less current: so groupings do not alternate, and a train that slows down does not go on in
-    parallel. It is not left before the least time per notch is over, unless its motor current would pass the set one.
+    A notch is left for a higher one that gives 2 % more effort. For a lower one it is left if that gives a quarter more,
+    so that groupings do not alternate; by a train that slows down also if that gives the same with a fifth less
+    current. It is not left before the least time per notch is over, unless its motor current would pass the set one.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def choose_notch(tables, train, mover, t, free_a):
             better = effort > _BETTER * most
         else:
             better = effort > max(_MUCH_BETTER * staying, most)
-            better = better or (best >= held and effort > _AS_GOOD * most and current < _LESS * taken)
+            better = better or (mover.slowing and best >= held and effort > _AS_GOOD * most and current < _LESS * taken)
         if better:
             best, most = n, effort
     return best

@@ -115,7 +115,7 @@ def _speed_step(tables, state, k, clock, u, row):
     note_calls(tables, train, mover, (state.arrived_s, state.left_s), (now, distance, share * change / time))
     mover.s_m += distance
     mover.v_mps = v + share * change
-    mover.voltage_v, mover.held_s = u, 0.0
+    mover.voltage_v, mover.held_s, mover.slowing = u, 0.0, change < 0.0
     return time
 
 

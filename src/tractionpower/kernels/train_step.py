@@ -120,7 +120,7 @@ def settle(tables, state, k, clock, u, row):
         state.done[k] = wished
     v = mover.v_mps
     state.movers[k] = trial
-    mover.voltage_v = u
+    mover.voltage_v, mover.slowing = u, mover.v_mps < v
     if train.drive == SERIES_MOTORS and done.traction_j == 0.0:  # motors that were off start in the first grouping
         mover.notch, mover.notch_since_s = 0, -np.inf
     stuck = mover.status == RUNNING and mover.v_mps == 0.0 and done.phase >= HOLDING

@@ -155,6 +155,7 @@ MOVER = np.dtype(
         ("notch", "i8"),
         ("below", "i8"),  # notch that takes turns with it, -1: off
         ("notch_since_s", "f8"),
+        ("slowing", "?"),  # whether it lost speed in the step before
         ("relay_open", "?"),
         ("relay_since_s", "f8"),  # since when the voltage asks for the other position; infinite: it does not
         ("voltage_v", "f8"),  # of the step before
