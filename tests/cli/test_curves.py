@@ -114,3 +114,33 @@ def test_a_folder_that_cannot_be_made(tmp_path, capsys):
     (tmp_path / "reports").write_text("in the way", encoding="utf-8")
     assert main(["curves", "vectron-dc"]) == 3
     assert "curves cannot be written into" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("vehicle", ["coach", "wagon-eaos"])
+def test_a_vehicle_without_a_drive_has_its_resistance_only(tmp_path, vehicle, capsys):
+    assert main(["curves", vehicle]) == 0
+    told = capsys.readouterr().out
+    assert "no drive" in told
+    assert not any(word in told for word in ("balancing", "effort", "current", "gradient"))
+    assert (tmp_path / "reports" / "curves" / f"{vehicle}.png").is_file()
+
+
+def test_the_balancing_speed_above_the_top_speed_and_the_steepest_start(capsys):
+    assert main(["curves", f"six/{RAILCAR}"]) == 0
+    told = capsys.readouterr().out
+    # 3.6e6 / V = 2000 + 0.5 V2: V = 186.3 km/h
+    found = re.search(r"at 3000 V: ([\d.]+) km/h, above its greatest speed of 120 km/h", told)
+    assert 3.6e6 / float(found[1]) == pytest.approx(2000.0 + 0.5 * float(found[1]) ** 2, rel=5e-3)
+    # 100 kN - 2 kN, over the weight of 100 t
+    assert "steepest gradient on which it can start at 3000 V: 99.9 ‰" in told
+
+
+def test_the_curve_of_a_table_does_not_go_beyond_it(study, capsys):
+    drive = "{kind: table, effort: [{speed_kmh: 0, effort_kn: 90}, {speed_kmh: %d, effort_kn: %d}], "
+    drive += "current: [{speed_kmh: 0, current_a: 10}, {speed_kmh: 120, current_a: 900}]}"
+    file = study / RAILCAR
+    text = re.sub(r"drive:.*?(?=\n\w)", "drive: " + drive, file.read_text(encoding="utf-8"), flags=re.DOTALL)
+    for (speed, effort), words in {(120, 45): "above its greatest speed\n", (200, 0): "above its greatest speed of 120"}.items():
+        file.write_text(text % (speed, effort), encoding="utf-8")
+        assert main(["curves", f"six/{RAILCAR}"]) == 0
+        assert words in capsys.readouterr().out

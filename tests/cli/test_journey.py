@@ -167,7 +167,9 @@ def test_figures_that_cannot_be_written(tmp_path, capsys):
     assert main(["journey", "six", "--no-reports"]) == 0
     (tmp_path / "reports" / "six" / "journey" / "figures").write_text("in the way", encoding="utf-8")
     assert main(["journey", "six", "--train", "11"]) == 3
-    assert "the tables are complete" in capsys.readouterr().err
+    told = capsys.readouterr()
+    assert "the tables are complete" in told.err
+    assert "theoretical journeys at 3000 V" in told.out
 
 
 def test_ctrl_c_leaves_no_trace(tmp_path, monkeypatch, capsys):
@@ -184,4 +186,6 @@ def test_run_json_says_what_the_journeys_were():
     assert main(["journey", "six", "--no-reports"]) == 0
     run = json.loads(Path("reports/six/journey/run.json").read_text(encoding="utf-8"))
     assert {"format", "status", "study", "input_hash", "seed", "versions", "wall_seconds", "steps", "files"} <= set(run)
+    assert run["verdicts"] == []
+    assert run["compile_seconds"] > 0.0
     assert [note["status"] for note in run["journeys"]] == ["complete", "complete"]

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from train_study import write_train_study
 
 from tractionpower.cli import check, main
 from tractionpower.errors import OutputError
@@ -94,3 +95,27 @@ def test_a_reader_of_a_pipe_that_leaves_gets_no_traceback():
     )
     assert "Traceback" not in result.stderr
     assert "BrokenPipe" not in result.stderr
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a closed pipe is another error elsewhere")
+@pytest.mark.parametrize("closed", ["stdout", "stderr"])
+@pytest.mark.parametrize("command", ["journey", "run"])
+def test_a_closed_pipe_does_not_keep_results_from_being_written(tmp_path, command, closed):
+    study = "two-substations"
+    if command == "journey":
+        study = str(write_train_study(tmp_path / "six"))
+    reader, writer = os.pipe()
+    os.close(reader)
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, closed: writer}
+    ran = subprocess.run(
+        [sys.executable, "-m", "tractionpower", command, study, "--out", str(tmp_path / "out")],
+        text=True, env={**os.environ, "PYTHONPATH": SOURCES}, check=False, **streams,
+    )  # fmt: skip
+    os.close(writer)
+    assert ran.returncode == 0, ran.stderr
+    assert list((tmp_path / "out" / "figures").glob("*.png"))
+    if closed == "stdout":
+        assert f"results: {tmp_path / 'out'}" in ran.stderr
+        assert "BrokenPipe" not in ran.stderr
+    else:
+        assert "ledger closes" in ran.stdout if command == "run" else "theoretical journeys" in ran.stdout

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tractionpower.errors import InputError, UsageError
+from tractionpower.errors import InputError, Problem, UsageError
 from tractionpower.io.rolling_stock import load_train, load_vehicle
 from tractionpower.io.scenario_files import load_scenario
 
@@ -256,11 +256,39 @@ def test_problems_of_trains_in_csv(problems_of_trains):
         ("bad_time", "timetable.trains[9].start.time", "trains.csv:4"),
         ("unknown_train", "timetable.trains[9].train", "trains.csv:4"),
         ("missing_file", "timetable.trains[10].route", "trains.csv:5"),
-        ("wrong_type", "timetable.trains[7].route[0].from_km", "route.csv:2"),
-        ("wrong_type", "timetable.trains[9].route[0].from_km", "route.csv:2"),
+        ("wrong_type", "timetable.trains[7].route[0].from_km", "route.csv:2"),  # once, though it is the route of 9 as well
     ]
     assert problems[1].found == "'soon' in column start.time"
     assert problems[4].found == "'zero' in column from_km"
+
+
+TABLE_DRIVE = "drive: {kind: table, effort: t.csv, current: t.csv}\n"
+TABLE_FILE = "rollingstock/vehicles/t.csv"
+
+
+@pytest.mark.parametrize(
+    ("rows", "code", "line"),
+    [
+        ("speed_kmh,effort_kn,current_a\n0,200,20\nfast,100,900\n", "wrong_type", 3),
+        ("speed_kmh,effort_kn,current_a,power\n0,200,20,1\n60,100,900,1\n", "unknown_column", 1),
+        ("speed_kmh,effort_kn,current_a\n0,200,20\n60,100\n90,90,900\n", "ragged_row", 3),
+    ],
+)
+def test_one_file_for_two_tables_is_told_once(one_of_trains, rows, code, line):
+    problem = one_of_trains({COACH_FILE: body("coach", TABLE_DRIVE), TABLE_FILE: rows})
+    assert (problem.code, problem.place) == (code, f"{TABLE_FILE}:{line}")
+
+
+def test_checks_of_one_file_for_two_tables_are_told_once(write_study, with_trains, stock_places):
+    rows = "speed_kmh,effort_kn,current_a\n0,200,20\n60,100,900\n60,100,900\n"
+    loaded = load_scenario(write_study(with_trains | {COACH_FILE: body("coach", TABLE_DRIVE), TABLE_FILE: rows}))
+    path = "vehicles[coach].drive"
+    twice = [Problem("table_curve", f"{path}.{name}[2].speed_kmh", "two points at 60 km/h") for name in ("effort", "current")]
+    other = Problem("table_curve", f"{path}.current[2].current_a", "two points at 60 km/h")
+    placed = loaded.provenance.place([*twice, other])
+    assert [(item.path, item.place) for item in placed] == [(item.path, f"{TABLE_FILE}:4") for item in (twice[0], other)]
+    same_line = [Problem("x", f"timetable.trains[7].calls[{k}].station", "the same") for k in range(2)]
+    assert len(loaded.provenance.place(same_line)) == 2  # in YAML each is told
 
 
 @pytest.mark.parametrize(

@@ -228,7 +228,7 @@ def test_changes_of_trains(with_trains, change, read, value):
     ("change", "code", "path", "told"),
     [
         ("vehicles[ep09].mass_t=-85", "bad_value", "vehicles[ep09].mass_t", "greater than 0"),
-        ("vehicles[ep09].drive.magnetisation[1].current_a=50", "bad_value", "vehicles[ep09].drive", "does not rise"),
+        ("vehicles[ep09].drive.magnetisation[1].current_a=50", "bad_value", "vehicles[ep09].drive", "[1] does not rise"),
         ("vehicles[ep09].drive.gear_ratio=-1", "bad_value", "vehicles[ep09].drive.gear_ratio", "greater than 0"),
         ("vehicles[unit].drive.kind=steam", "bad_value", "vehicles[unit].drive", "does not match any of the expected tags"),
         ("vehicles[unit].drive.gear_ratio=2", "unknown_path", "vehicles[unit].drive.gear_ratio", "has no 'gear_ratio'"),
@@ -237,7 +237,8 @@ def test_changes_of_trains(with_trains, change, read, value):
         ("trains[x].vehicles[3].count=2", "unknown_path", "trains[x].vehicles[3].count", "has no '3'"),
         ("trains[x].vehicles[0].count=0", "bad_value", "trains[x].vehicles[0].count", "greater than or equal to 1"),
         ("timetable.trains[0].train=y", "unknown_path", "timetable.trains[0].train", "has no '0'"),  # ids are numbers here
-        ("timetable.trains[7].train=null", "bad_value", "timetable.trains[7]", "either train or vehicles"),
+        ("timetable.trains[7].train=null", "bad_value", "timetable.trains[7]", "either train or vehicles, found neither"),
+        ("vehicles[ep09].adhesive_mass_t=90.5", "bad_value", "vehicles[ep09]", "greater than mass_t: 90.5 t and 84 t"),
     ],
 )
 def test_changes_of_trains_that_are_refused(with_trains, change, code, path, told):

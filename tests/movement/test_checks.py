@@ -13,6 +13,7 @@ from small_trains import BRAKE, INVERTER, SERIES_MOTORS, VEHICLE, call, journey,
 
 from tractionpower.cosimulation.check import check_scenario
 from tractionpower.model.change import apply_changes
+from tractionpower.model.limits import Limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.movement.checks import check_movement
 
@@ -145,7 +146,90 @@ def test_runs_after_the_end_of_the_clock_are_told_at_once():
     runs.append({"id": "z", "train": "t", "route": runs[0]["route"], "calls": [call("A", departure="00:30:00"), call("B")]})
     found = only(study(runs=runs[::-1], clock={"end": "00:30:00"}))
     assert found.path == "timetable.trains[z].calls[0].departure"
-    assert found.found.endswith("it does not run; nor do 0, 1, 2")
+    assert found.found.endswith("the co-simulation (`run`) leaves it out, `journey` runs it; likewise 0, 1, 2")
+
+
+NIGHT = {"start": "22:00:00", "end": "26:00:00"}
+MORNING = {"start": "06:00:00", "end": "08:00:00"}
+
+
+@pytest.mark.parametrize(
+    ("time", "calls", "clock", "remedy"),
+    [
+        ("00:30:00", [], NIGHT, "times of the next day go on beyond 24:00:00: write 24:30:00"),
+        ("09:59:00", [], NIGHT, "let the clock start earlier, or leave it out"),
+        ("10:00:00", [], NIGHT, None),
+        ("05:50:00", [], MORNING, None),  # when it ends is not known
+        ("05:50:00", [call("A", departure="05:50:00"), call("C")], MORNING, None),
+        ("05:50:00", [call("B", arrival="05:55:00"), call("C", arrival="05:59:59")], MORNING, "let the clock start earlier"),
+        ("05:50:00", [call("B", arrival="05:55:00"), call("C", arrival="06:00:00")], MORNING, None),
+    ],
+)
+def test_a_run_that_ends_before_the_clock_begins(time, calls, clock, remedy):
+    found = check_movement(study(time=time, calls=calls, clock=clock))
+    assert [(item.code, item.path, item.severity) for item in found] == [
+        ("begins_before_clock", f"{RUN}.start.time", "warning")
+    ] * bool(remedy)
+    assert all(item.remedy.startswith(remedy) for item in found)
+
+
+def test_runs_before_the_clock_are_told_at_once():
+    found = only(study(runs=[make_run(name, 10.0, time=1800.0) for name in "xyz"], clock=NIGHT))
+    assert found.found == ("begins at 00:30:00, the clock starts at 22:00:00: the run should be over by then; likewise y, z")
+
+
+# --- categories --------------------------------------------------------------------------------------------------
+
+
+def with_categories(rows, *, train=None, run=None):
+    """Return a study whose line has rows of the categories `rows`, beside one of none, with those of train and run."""
+    changes = {"trains[t].category": train, "timetable.trains[x].category": run}
+    scenario = apply_changes(study(), [f"{path}={name}" for path, name in changes.items() if name is not None])
+    limits = scenario.line.speed_limits
+    limits += tuple(limits[0].model_copy(update={"category": name}) for name in rows)
+    return scenario.model_copy(update={"line": scenario.line.model_copy(update={"speed_limits": limits})})
+
+
+@pytest.mark.parametrize(
+    ("categories", "expected"),
+    [
+        ({"rows": [], "train": "freight"}, []),
+        ({"rows": ["freight", "freight"], "train": "freight"}, []),
+        ({"rows": ["freight"], "train": "passenger", "run": "freight"}, []),
+        # one slip is told once
+        ({"rows": ["fright"], "train": "freight"}, [("line.speed_limits[1].category", "did you mean freight?")]),
+        # other trains may run on another day
+        ({"rows": ["freight", "work"], "train": "freight"}, []),
+        ({"rows": ["freight"]}, []),
+        ({"rows": ["freight"], "run": "passenger"}, []),
+    ],
+)
+def test_categories(categories, expected):
+    found = check_movement(with_categories(**categories))
+    assert [(item.code, item.path, item.severity) for item in found] == [
+        ("unused_category", path, "warning") for path, _ in expected
+    ]
+    assert all(item.remedy.startswith(remedy) for item, (_, remedy) in zip(found, expected, strict=True))
+
+
+def test_a_train_category_like_one_that_another_train_has():
+    runs = [make_run("x", 10.0), make_run("y", 10.0)]
+    scenario = apply_changes(study(runs=runs), ["trains[t].category=freight", "timetable.trains[y].category=fright"])
+    limits = scenario.line.speed_limits
+    limits += (limits[0].model_copy(update={"category": "freight"}),)
+    found = only(scenario.model_copy(update={"line": scenario.line.model_copy(update={"speed_limits": limits})}))
+    assert (found.path, found.allowed, found.remedy) == (
+        "timetable.trains[y].category", "freight", "did you mean freight?"
+    )  # fmt: skip
+
+
+def test_a_knee_of_the_system_that_is_too_low():
+    limits = [limit for limit in study().limits if (limit.system, limit.name) != ("dc3000", "knee_factor")]
+    low = Limit(system="dc3000", name="knee_factor", value=0.7)
+    found = only(study().model_copy(update={"limits": (*limits, low)}))
+    assert (found.code, found.path, found.severity) == ("low_knee", "limits[dc3000 knee_factor]", "error")
+    own = study(drive=INVERTER | {"knee_factor": 0.9})
+    assert check_movement(own.model_copy(update={"limits": (*limits, low)})) == []
 
 
 # --- routes and calls --------------------------------------------------------------------------------------------

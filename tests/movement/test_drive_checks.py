@@ -64,6 +64,20 @@ def test_what_a_map_lacks_is_named():
     assert problem.found == "the load of 100 % has no point at 0 km/h"
 
 
+@pytest.mark.parametrize("base", [INVERTER, SERIES_MOTORS, TABLE], ids=lambda base: base["kind"])
+@pytest.mark.parametrize(("factor", "is_told"), [(0.7, True), (0.701, False), (0.5, True), (0.9, False)])
+def test_a_knee_at_the_lowest_voltage(base, factor, is_told):
+    # 1.05 U_min2 are 2100 V
+    assert told(base, knee_factor=factor) == [("low_knee", "d.knee_factor", "error")] * is_told
+    assert problems(base, None, knee_factor=factor) == []
+
+
+def test_a_low_knee_is_told_with_the_voltages():
+    (problem,) = problems(INVERTER, knee_factor=0.6)
+    assert problem.found == "0.6, a knee at 1800 V"
+    assert problem.allowed == "above 2100 V, 1.05 of U_min2 = 2000 V: above 0.7"
+
+
 def magnetisation(*rows):
     return [{"current_a": amps, "emf_vs_per_rev": emf} for amps, emf in rows]
 

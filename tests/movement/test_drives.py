@@ -70,8 +70,8 @@ def test_curves_of_a_table_by_voltage_and_speed():
     assert (low["voltage_v"], high["voltage_v"]) == (2000.0, 3300.0)
     efforts = tables.points[high["first_effort"] : high["first_effort"] + high["efforts"]]
     assert efforts.tolist() == [(0.0, 360e3), (25.0, 150e3)]
-    currents = tables.points[low["first_current"] : low["first_current"] + low["currents"]]
-    assert currents.tolist() == [(0.0, 2400.0), (25.0, 900.0)]
+    losses = tables.points[low["first_loss"] : low["first_loss"] + low["losses"]]
+    assert losses.tolist() == [(0.0, 2000.0 * 2400.0), (25.0, 2000.0 * 900.0 - 25.0 * 90e3)]
     assert train["start_n"] == 360e3
 
 

@@ -1,7 +1,7 @@
 """Checks of vehicles and trains: each fault alone, at its place; what is in order is not told."""
 
 import pytest
-from small_trains import VEHICLE
+from small_trains import BRAKE, INVERTER, TABLE, VEHICLE
 
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.io.rolling_stock import load_train, shipped_trains
@@ -44,15 +44,42 @@ def test_what_ships_is_in_order(name):
         ({"drive": None, "brake": {"electric_effort_kn": 5.0}}, "brake_without_drive", "brake.electric_effort_kn", "error"),
         ({"brake": {"electric_effort_kn": 5.0}}, "brake_without_power", "brake.electric_power_kw", "warning"),
         ({"mass_t": 30.0, "adhesive_mass_t": None}, "absurd_effort", "drive.starting_effort_kn", "warning"),
+        ({"drive": INVERTER | {"power_kw": 20001.0}}, "absurd_power", "drive.power_kw", "warning"),
+        # mu = 7.5 / 44 + 0.161 = 0.331: 200 t give 650 kN
+        ({"brake": BRAKE | {"electric_effort_kn": 651.0}}, "brake_adhesion", "brake.electric_effort_kn", "warning"),
+        ({"drive": TABLE, "max_speed_kmh": 161.0}, "short_table", "drive.effort", "warning"),
+        ({"drive": TABLE | {"current": TABLE["current"][:-1]}}, "short_table", "drive.current", "warning"),
     ],
 )
 def test_each_fault_of_a_vehicle(more, code, path, severity):
     assert vehicle_problems(**more) == [(code, path, severity)]
 
 
-@pytest.mark.parametrize("more", [{}, {"axles": 5}, {"mass_t": 40.0, "adhesive_mass_t": 40.0}, {"drive": None}])
+@pytest.mark.parametrize(
+    "more",
+    [
+        {},
+        {"axles": 5},
+        {"mass_t": 40.0, "adhesive_mass_t": 40.0},
+        {"drive": None},
+        {"drive": INVERTER | {"power_kw": 20000.0}},
+        {"drive": TABLE},
+        {"brake": BRAKE | {"electric_effort_kn": 649.0}},
+        {"brake": BRAKE | {"electric_effort_kn": 900.0}, "adhesive_mass_t": None},
+    ],
+)
 def test_what_a_vehicle_may_be(more):
     assert vehicle_problems(**more) == []
+
+
+def test_where_a_table_ends():
+    low = [point | {"voltage_v": 2000.0} for point in TABLE["effort"] if point["speed_kmh"] <= 60.0]
+    high = [point | {"voltage_v": 3000.0} for point in TABLE["effort"]]
+    amps = [{"voltage_v": 2000.0, "speed_kmh": kmh, "current_a": 2000.0} for kmh in (0.0, 60.0)]
+    amps += [point | {"voltage_v": 3000.0} for point in TABLE["current"]]
+    (problem,) = check_vehicle(vehicle(drive=TABLE | {"effort": low + high, "current": amps}), VOLTAGES)
+    told = "the points at 2000 V end at 60 km/h: effort and losses stay those of 60 km/h up to 160 km/h"
+    assert (problem.code, problem.found) == ("short_table", told)
 
 
 KNOWN = {

@@ -5,7 +5,15 @@ import pandas as pd
 import pytest
 from fake_journeys import make_curves
 
-from tractionpower.reporting.curve_figures import balancing_speed, curves_figure, curves_table, write_curves_csv
+from tractionpower.reporting.curve_figures import (
+    balancing_speed,
+    curves_figure,
+    curves_table,
+    has_drive,
+    resistance_figure,
+    starting_gradient,
+    write_curves_csv,
+)
 
 
 def test_the_figure_has_all_curves_with_units(no_overlap):
@@ -63,3 +71,22 @@ def test_the_balancing_speed_is_where_effort_meets_resistance():
     assert v == pytest.approx(np.roots([9.0, 0.0, 7e3, -400e3])[-1].real, rel=1e-3)
     assert balancing_speed(make_curves([3000.0])) is None
     assert balancing_speed(make_curves([2000.0])) == 0.0
+
+
+def test_without_a_drive_there_is_the_resistance_only(no_overlap):
+    curves = make_curves([3000.0])
+    assert has_drive(curves)
+    curves.curves[0].effort_n[:] = 0.0
+    assert not has_drive(curves)
+    figure = resistance_figure(curves, "Coach")
+    (axes,) = figure.axes
+    assert figure._suptitle.get_text() == "Coach, no drive"
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["resistance on level and gradients"]
+    top = max(curves.resistance_n[20.0]) / 1000.0
+    assert top < axes.get_ylim()[1] < 1.2 * top
+    no_overlap(figure, axes.texts)
+
+
+def test_the_steepest_gradient_of_a_start():
+    assert starting_gradient(make_curves([3000.0])) == pytest.approx(1000.0 * (200e3 - 7e3) / (484e3 * 9.80665))
+    assert starting_gradient(make_curves([2000.0])) < 0.0

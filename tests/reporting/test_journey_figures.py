@@ -1,10 +1,12 @@
 """The figure of a journey: what is drawn, where, and that names do not overlap."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fake_journeys import make_journey, make_line
 
-from tractionpower.reporting.journey_figures import course_of, journey_figure
+from tractionpower.reporting.journey_figures import course_of, journey_figure, whole_rows
 from tractionpower.studies.journeys import stations_on
 
 
@@ -47,6 +49,21 @@ def test_efforts_and_currents_are_means_over_the_place_of_their_step(line, journ
     limit = line_named(panels["current at the pantograph [A]"], "train current limit of the line")
     assert limit.get_ydata()[0] == 1500.0
     assert np.isnan(limit.get_ydata()[-1])
+
+
+def test_the_step_in_which_a_train_leaves_is_left_out_of_efforts_and_current(line, journeys):
+    left = replace(journeys[0], finished_s=journeys[0].finished_s - 0.6)
+    assert (whole_rows(journeys[0]), whole_rows(left)) == (len(left.rows), len(left.rows) - 1)
+    _, panels = draw(left, line)
+    for panel, label in (
+        ("effort at the wheel [kN]", "tractive effort"),
+        ("effort at the wheel [kN]", "resistance"),
+        ("current at the pantograph [A]", "current"),
+    ):
+        drawn = line_named(panels[panel], label)
+        assert drawn.get_xdata()[-1] == pytest.approx(0.5 + left.rows["s_m"][-1] / 1000.0)
+        assert len(drawn.get_xdata()) == len(left.rows)
+    assert line_named(panels["speed [km/h]"], "speed").get_xdata()[-1] == pytest.approx(12.0)
 
 
 def test_limit_and_ceiling_are_those_of_the_journey(line, journeys):

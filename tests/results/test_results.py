@@ -68,3 +68,13 @@ def test_a_run_json_that_is_none(folder, write_run, text):
     (folder / "run.json").write_text(text, encoding="utf-8")
     with pytest.raises(UsageError, match="not what a complete run writes"):
         Results.open(folder)
+
+
+def test_results_tell_in_a_line_what_they_are(folder, write_run, rows):
+    write_run()
+    told = Results.open(folder)
+    count = len(told.table("loads"))
+    assert repr(told) == f"<Results of study {told.run['study']!r}, complete; tables: loads ({count} rows)>"
+    assert repr(Results({}, [], {"loads": rows(0, 10)})) == f"<Results of study '', unknown; tables: loads ({count} rows)>"
+    (folder / "loads.parquet").unlink()
+    assert "loads (? rows)" in repr(told)

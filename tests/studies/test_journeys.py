@@ -1,6 +1,8 @@
 """Theoretical journeys of a study: rows, calls, figures, and words for those who do not arrive."""
 
+import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +21,7 @@ from tractionpower.studies.journeys import (
     choose_runs,
     compute_journeys,
     end_of,
+    journeys,
     route_in_words,
     stations_on,
     why_not_complete,
@@ -209,3 +212,30 @@ def test_a_train_that_cannot_go_on_is_kept_and_told(scenario):
 def test_errors_of_the_inputs_stop_it(scenario):
     with pytest.raises(InputError, match="substations"):
         compute_journeys(apply_changes(scenario, ["supply.substations[S].km=99"]), MemoryWriter())
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"form": "place"}, "form 'place': allowed are time and speed"),
+        ({"voltage_v": 0.0}, "voltage_v 0.0: allowed are finite numbers above 0 V"),
+        ({"voltage_v": math.inf}, "voltage_v inf"),
+        ({"voltage_v": "3000"}, "voltage_v '3000'"),
+        ({"step_s": 0.01}, "step_s 0.01: allowed are 0.02 to 5 s"),
+        ({"step_s": math.nan}, "step_s nan"),
+        ({"step_s": True}, "step_s "),
+    ],
+)
+def test_an_option_that_is_not_allowed(scenario, options, words):
+    with pytest.raises(UsageError, match=re.escape(words)):
+        journeys(scenario, **options)
+
+
+def test_journeys_in_memory_take_the_same_options(scenario):
+    results = journeys(scenario, voltage_v=np.float32(2500.0), step_s=1, form="speed", runs=["11"])
+    assert [results.run[name] for name in ("voltage_v", "step_s", "form")] == [2500.0, 1.0, "speed"]
+    assert results.run["verdicts"] == []
+    assert min(results.run["compile_seconds"], results.run["wall_seconds"]) > 0.0
+    assert json.dumps(results.run)
+    with pytest.raises(TypeError, match="volts"):
+        journeys(scenario, volts=3000.0)

@@ -23,11 +23,11 @@ PIPE_WIDTH = 250
 
 def new_console() -> Console:
     """Return a console on stdout that prints names of users as they are."""
-    from rich.console import Console
+    from tractionpower.cli.closed_pipes import PatientConsole
 
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a pipe on Windows may lack letters of a name
-    console = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
+    console = PatientConsole(highlight=False, markup=False, emoji=False, soft_wrap=True)
     # A narrow window shall not break the table, and a pipe has no width at all.
     console.width = max(console.width, WIDTH) if console.is_terminal else PIPE_WIDTH
     return console
@@ -45,10 +45,10 @@ def new_table(texts: Sequence[str], numbers: Sequence[str]) -> Table:
     return table
 
 
-def warn_of_compilation() -> None:
-    """Say that the first run on a machine takes a while."""
+def warn_of_compilation(kernel: str) -> None:
+    """Say that the first run of a kernel on a machine takes a while."""
     from tractionpower.cli.messages import tell
     from tractionpower.kernels.jit import is_compiled
 
-    if not is_compiled():
+    if not is_compiled(kernel):
         tell("first run on this machine: compiling the kernels, up to a minute; later starts use the cache")

@@ -5,17 +5,21 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from tractionpower.model.limits import SystemVoltages
+    from tractionpower.model.limits import Limit, SystemVoltages
     from tractionpower.model.vehicle import Train, Vehicle
     from tractionpower.movement.curves import TrainCurves
+
+FASTEST_KMH = 600.0
+"""Speed up to which a balancing speed is sought [km/h]."""
 
 
 def curves(
@@ -35,7 +39,7 @@ def curves(
     from tractionpower.io.rolling_stock import load_train
     from tractionpower.model.limits import system_voltages
     from tractionpower.movement.curves import drive_curves
-    from tractionpower.reporting.curve_figures import curves_figure, write_curves_csv
+    from tractionpower.reporting.curve_figures import curves_figure, has_drive, resistance_figure, write_curves_csv
     from tractionpower.reporting.style import png_names, save
 
     limits = shipped_limits()
@@ -50,12 +54,14 @@ def curves(
     chosen = sorted(set(voltage)) if voltage else None
     drawn = drive_curves(declared, vehicles, limits, system, chosen)
     at_nominal = drive_curves(declared, vehicles, limits, system, [voltages.u_n])
-    _show(declared.name or declared.id, at_nominal, drawn)
+    beyond = partial(_faster_curves, declared, vehicles, limits, system)
+    _show(declared.name or declared.id, at_nominal, drawn, beyond)
     folder = out if out is not None else Path("reports") / "curves"
     figure = folder / png_names([declared.id])[declared.id]
     title = f"{declared.name or declared.id}: {drawn.mass_kg / 1000.0:.1f} t, {drawn.length_m:.1f} m"
+    draw = curves_figure if has_drive(at_nominal) else resistance_figure
     try:
-        paths = [save(curves_figure(drawn, title), figure), write_curves_csv(drawn, figure.with_suffix(".csv"))]
+        paths = [save(draw(drawn, title), figure), write_curves_csv(drawn, figure.with_suffix(".csv"))]
     except OSError as error:
         raise OutputError(f"curves cannot be written into {folder}: {error}") from error
     tell("results: " + ", ".join(str(path) for path in paths))
@@ -76,18 +82,53 @@ def _check(argument: str, train: Train, vehicles: Sequence[Vehicle], voltages: S
     tell_problems(problems)
 
 
-def _show(name: str, nominal: TrainCurves, drawn: TrainCurves) -> None:
+def _faster_curves(train: Train, vehicles: Sequence[Vehicle], limits: Sequence[Limit], system: str) -> TrainCurves | None:
+    """Return the curves at nominal voltage beyond the top speed; None where a table of the drive says nothing there."""
+    from tractionpower.model.drive import TableDrive
+    from tractionpower.model.limits import system_voltages
+    from tractionpower.movement.curves import drive_curves
+
+    known: dict[float | None, float] = {}  # to which speed each curve goes
+    for vehicle in vehicles:
+        for point in vehicle.drive.effort if isinstance(vehicle.drive, TableDrive) else ():
+            known[point.voltage_v] = max(point.speed_kmh, known.get(point.voltage_v, 0.0))
+    top = {"max_speed_kmh": min(FASTEST_KMH, *known.values())} if known else {"max_speed_kmh": FASTEST_KMH}
+    if known and top["max_speed_kmh"] <= min(vehicle.max_speed_kmh for vehicle in vehicles):
+        return None
+    faster = [vehicle.model_copy(update=top) for vehicle in vehicles]
+    return drive_curves(train.model_copy(update=top), faster, limits, system, [system_voltages(limits, system).u_n])
+
+
+def _balance(nominal: TrainCurves, beyond: Callable[[], TrainCurves | None]) -> str:
+    """Return the balancing speed in words; the curve goes on beyond the top speed where it is known there."""
+    from tractionpower.reporting.curve_figures import balancing_speed
+
+    top, speed = float(nominal.speed_mps[-1]), balancing_speed(nominal)
+    if speed is not None:
+        return f"{3.6 * speed:.1f} km/h"
+    faster = beyond()
+    speed = None if faster is None else balancing_speed(faster)
+    if speed is None:
+        return "above its greatest speed"
+    return f"{3.6 * max(speed, top):.1f} km/h, above its greatest speed of {3.6 * top:g} km/h"
+
+
+def _show(name: str, nominal: TrainCurves, drawn: TrainCurves, beyond: Callable[[], TrainCurves | None]) -> None:
     """Print what one asks first of a train: how it starts, how fast it can run, what it takes."""
     from tractionpower.cli.console import new_console
-    from tractionpower.reporting.curve_figures import balancing_speed
+    from tractionpower.reporting.curve_figures import has_drive, starting_gradient
 
     console = new_console()
     curve = nominal.curves[0]
     console.print(f"{name}: {nominal.mass_kg / 1000.0:.1f} t, {nominal.length_m:.1f} m, {3.6 * nominal.speed_mps[-1]:g} km/h")
+    if not has_drive(nominal):
+        console.print("no drive")
+        return
     console.print(f"starting effort at {curve.voltage_v:g} V: {curve.effort_n[0] / 1000.0:.1f} kN")
-    speed = balancing_speed(nominal)
-    words = "above its greatest speed" if speed is None else f"{3.6 * speed:.1f} km/h"
-    console.print(f"balancing speed on the level at {curve.voltage_v:g} V: {words}")
+    steepest = math.floor(10.0 * starting_gradient(nominal)) / 10.0  # on what is told it does start
+    words = f"{steepest:.1f} ‰" if steepest >= 0.0 else "none, it cannot start on the level"
+    console.print(f"steepest gradient on which it can start at {curve.voltage_v:g} V: {words}")
+    console.print(f"balancing speed on the level at {curve.voltage_v:g} V: {_balance(nominal, beyond)}")
     most = max(((float(c.current_a.max()), c) for c in (curve, *drawn.curves)), key=lambda pair: pair[0])
     at = 3.6 * float(drawn.speed_mps[int(most[1].current_a.argmax())])
     console.print(f"greatest current: {most[0]:.0f} A, at {most[1].voltage_v:g} V and {at:.0f} km/h")

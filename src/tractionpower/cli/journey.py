@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
+    from tractionpower.errors import OutputError
     from tractionpower.io.scenario_files import LoadedScenario
     from tractionpower.model.line import Line
     from tractionpower.model.scenario import Scenario
@@ -79,20 +80,21 @@ def journey(  # noqa: PLR0917 - typer makes options of them
     runs = choose_runs(scenario, train)
     folder = out if out is not None else Path("reports") / loaded.folder.name / "journey"
     tell(f"{scenario.name or loaded.folder.name}: {loaded.origin}")
-    warn_of_compilation()
+    warn_of_compilation("run_journey" if form is Form.TIME else "run_over_speed")
     outcome, writer = _compute(loaded, scenario, folder, force, voltage_v=voltage, step_s=step, form=form.value, runs=runs)
     shown = runs if train else runs[:MOST]
+    unwritten = None if no_reports else _write_figures(outcome, scenario, folder, shown)
     _show(new_console(), outcome, scenario.line, shown)
     if len(shown) < len(runs):
         tell(f"calls and figures of the first {MOST} of {len(runs)} trains; --train ID shows others, the tables hold all")
     for name, ledger in outcome.run["ledgers"].items():
         closes = "closes" if ledger["closes"] else "DOES NOT CLOSE"
         tell(f"ledger {name.replace('_', ' ')} {closes}: gap at most {ledger['worst_gap_share']:.1g} (train {ledger['train']})")
-    if not no_reports:
-        _write_figures(outcome, scenario, folder, shown)
     for each in outcome.journeys:
         if each.status != "complete":
             tell(why_not_complete(each))
+    if unwritten is not None:
+        raise unwritten
     tell(f"results: {folder}")
     for path in writer.beside:
         tell(f"{path.name} was written beside a file that another program holds open")
@@ -128,14 +130,16 @@ def _compute(
     return outcome, writer
 
 
-def _write_figures(outcome: JourneyOutcome, scenario: Scenario, folder: Path, shown: Sequence[str]) -> None:
+def _write_figures(outcome: JourneyOutcome, scenario: Scenario, folder: Path, shown: Sequence[str]) -> OutputError | None:
+    """Write the figures; return what hinders that, so that the tables are printed first."""
     from tractionpower.errors import OutputError
     from tractionpower.reporting.journeys import write_journey_figures
 
     try:
         write_journey_figures(outcome, scenario, folder / "figures", shown)
     except OSError as error:
-        raise OutputError(f"the tables are complete, but figures cannot be written into {folder / 'figures'}: {error}") from error
+        return OutputError(f"the tables are complete, but figures cannot be written into {folder / 'figures'}: {error}")
+    return None
 
 
 def _show(console: Console, outcome: JourneyOutcome, line: Line, shown: Sequence[str]) -> None:

@@ -7,7 +7,8 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from contextlib import suppress
+from typing import IO, TYPE_CHECKING, Protocol, runtime_checkable
 
 import typer
 
@@ -47,18 +48,31 @@ def exit_code_of(error: BaseException) -> int | None:
         tell("tractionpower: interrupted")
         return NOT_COMPLETED
     if isinstance(error, BrokenPipeError):
-        # The reader of a pipe, such as head, has enough; nothing more must be written at the end of the process.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return NOT_COMPLETED
+        # The reader of a pipe, such as head, has enough.
+        close_quietly(sys.stdout)
+        return DONE
     if isinstance(error, _CommandLineError):
         error.show()
         return error.exit_code
     return None
 
 
+def close_quietly(stream: IO[str]) -> None:
+    """Let what a stream still holds, and what is yet to come, go nowhere, so that the end of the process is quiet."""
+    with suppress(OSError, ValueError):  # a stream of a test or a notebook has no file
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        try:
+            os.dup2(nowhere, stream.fileno())
+        finally:
+            os.close(nowhere)
+
+
 def tell(text: str) -> None:
-    """Print one line on stderr."""
-    print(text, file=sys.stderr)
+    """Print one line on stderr; nobody has to read it."""
+    try:
+        print(text, file=sys.stderr)
+    except BrokenPipeError:
+        close_quietly(sys.stderr)
 
 
 def tell_problems(problems: Iterable[Problem]) -> None:
@@ -111,9 +125,9 @@ def _print_problem(console: Console, problem: Problem) -> None:
 
 def _console() -> Console:
     # Imported here: rich is not needed by those who only ask for help.
-    from rich.console import Console
+    from tractionpower.cli.closed_pipes import PatientConsole
 
-    return Console(stderr=True, soft_wrap=True, highlight=False, markup=False, emoji=False)
+    return PatientConsole(stderr=True, soft_wrap=True, highlight=False, markup=False, emoji=False)
 
 
 def _plain(text: str, style: str) -> Text:

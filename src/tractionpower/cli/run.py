@@ -11,6 +11,7 @@ import typer
 
 if TYPE_CHECKING:
     from tractionpower.cosimulation.run import Outcome, Run
+    from tractionpower.errors import OutputError
     from tractionpower.io.scenario_files import LoadedScenario
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.store import RunWriter
@@ -37,13 +38,14 @@ def run(
     scenario = apply_changes(loaded.scenario, changes or [])
     folder = out if out is not None else Path("reports") / loaded.folder.name
     tell(f"{scenario.name or loaded.folder.name}: {loaded.origin}")
-    warn_of_compilation()
+    warn_of_compilation("advance")
     prepared, writer = _prepare(loaded, scenario, folder, force)
     tell_problems(loaded.provenance.place([*loaded.problems, *prepared.warnings]))
     outcome = _execute(prepared, writer)
+    unwritten = None if no_reports else _write_reports(folder, scenario)
     _show(outcome, prepared)
-    if not no_reports:
-        _write_reports(folder, scenario)
+    if unwritten is not None:
+        raise unwritten
     tell(f"results: {folder}")
     for path in writer.beside:
         tell(f"{path.name} was written beside a file that another program holds open")
@@ -67,14 +69,14 @@ def _prepare(loaded: LoadedScenario, scenario: Scenario, folder: Path, force: bo
 
 
 def _execute(prepared: Run, writer: RunWriter) -> Outcome:
-    from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+    from tractionpower.cli.closed_pipes import PatientConsole
     from tractionpower.cli.messages import tell
 
     bar = Progress(
         TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"), TimeRemainingColumn(),
-        console=Console(stderr=True), transient=True,
+        console=PatientConsole(stderr=True), transient=True,
     )  # fmt: skip
     try:
         with bar:
@@ -88,18 +90,20 @@ def _execute(prepared: Run, writer: RunWriter) -> Outcome:
     return outcome
 
 
-def _write_reports(folder: Path, scenario: Scenario) -> None:
+def _write_reports(folder: Path, scenario: Scenario) -> OutputError | None:
+    """Write the figures; return what hinders that, so that the tables are printed first."""
     from tractionpower.errors import OutputError
     from tractionpower.reporting.figures import write_figures
     from tractionpower.results.results import Results
 
     results = Results.open(folder)
     if "profile" not in results.tables:  # left out with output.tables
-        return
+        return None
     try:
         write_figures(results, scenario, folder / "figures")
     except OSError as error:
-        raise OutputError(f"the tables are complete, but figures cannot be written into {folder / 'figures'}: {error}") from error
+        return OutputError(f"the tables are complete, but figures cannot be written into {folder / 'figures'}: {error}")
+    return None
 
 
 def _exit_code(outcome: Outcome, strict: bool) -> int:

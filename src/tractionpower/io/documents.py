@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -11,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 from tractionpower.errors import InputError, Problem
 from tractionpower.io.csv_files import read_csv
 from tractionpower.io.problems import Input, format_problem, problems_of
-from tractionpower.io.provenance import Loc, Mark, path_of
+from tractionpower.io.provenance import Loc, Mark, path_of, told_once
 from tractionpower.io.shapes import Shape, shape_of
 from tractionpower.io.text_files import Source, relative_label
 from tractionpower.io.wording import shown
@@ -66,7 +67,7 @@ class Reader:
         try:
             read = read_yaml(source)
         except InputError as error:
-            self.problems += error.problems
+            self._tell(error.problems)
             return None
         self.problems += read.problems
         content = Input(source.root, read.data, read.mark, shape_of(model), source.file)
@@ -82,8 +83,12 @@ class Reader:
         try:
             return model.model_validate(content.data)
         except ValidationError as error:
-            self.problems += problems_of(error, content)
+            self._tell(problems_of(error, content))
             return None
+
+    def _tell(self, problems: Iterable[Problem]) -> None:
+        # In place: others may hold the list.
+        self.problems[:] = told_once([*self.problems, *problems])
 
     def _expand(self, data: Any, shape: Shape, mark: Mark, loc: Loc, content: Input) -> set[Loc]:
         # Puts the rows of CSV files in the place of their names; returns the places that failed.
@@ -116,9 +121,9 @@ class Reader:
         try:
             table = read_csv(source, row)
         except InputError as error:
-            self.problems += error.problems
+            self._tell(error.problems)
             return {loc}
-        self.problems += table.problems
+        self._tell(table.problems)
         data[key], mark.children[key] = table.rows, table.mark
         # The rows may name further files, relative to their own.
         deeper = self._expand(table.rows, shape, table.mark, loc, replace(content, file=source.file))

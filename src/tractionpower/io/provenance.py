@@ -120,6 +120,22 @@ def path_of(root: str, loc: Loc, data: Any) -> str:
     return path
 
 
+def told_once(problems: Iterable[Problem], *, by_cell: bool = False) -> list[Problem]:
+    """Return `problems` without what a CSV file that stands for several lists tells again at the same line.
+
+    With `by_cell` the paths below the row must be equal too; else `found` names the column.
+    """
+    kept: dict[object, Problem] = {}
+    for k, problem in enumerate(problems):
+        file, _, line = problem.place.rpartition(":")
+        is_row = line.isdecimal()
+        cell = problem.path.rpartition("]")[2] if by_cell and is_row else ""
+        key = (problem.code, problem.place, problem.found, frozenset(problem.allowed.split(", ")), cell)
+        is_table = (file if is_row else problem.place).lower().endswith(".csv")
+        kept.setdefault(key if is_table else k, problem)
+    return list(kept.values())
+
+
 class Provenance:
     """The files and lines of one scenario.
 
@@ -137,5 +153,6 @@ class Provenance:
         return self._root.find(split_path(path)).place
 
     def place(self, problems: Iterable[Problem]) -> list[Problem]:
-        """Return `problems` with file and line filled in where they are still empty."""
-        return [problem if problem.place else replace(problem, place=self.locate(problem.path)) for problem in problems]
+        """Return `problems` with file and line filled in where they are still empty, each told once."""
+        placed = [problem if problem.place else replace(problem, place=self.locate(problem.path)) for problem in problems]
+        return told_once(placed, by_cell=True)

@@ -38,8 +38,14 @@ class EfficiencyPoint(Declaration):
     efficiency: Real = field("efficiency", _EFFICIENCY, above=0, at_most=1)
 
 
-def _rises(values: Sequence[float]) -> bool:
-    return all(a < b for a, b in pairwise(values))
+def _check_order(name: str, values: Sequence[float], unit: str, *, falls: bool = False) -> None:
+    """Raise at the first value that does not rise, or fall, behind the one before; `name` has a place for its index."""
+    for k, (before, after) in enumerate(pairwise(values), start=1):
+        if not (after < before if falls else before < after):
+            told = {"at": name.format(k), "after": f"{after:.10g} {unit}", "before": f"{before:.10g} {unit}"}
+            if falls:
+                raise PydanticCustomError("not_falling", "{at} does not fall from step to step: {after} behind {before}", told)
+            raise PydanticCustomError("not_rising", "{at} does not rise from point to point: {after} behind {before}", told)
 
 
 class InverterDrive(Declaration):
@@ -75,8 +81,7 @@ class InverterDrive(Declaration):
 
     @model_validator(mode="after")
     def _has_power_by_rising_voltage(self) -> InverterDrive:
-        if not _rises([point.voltage_v for point in self.power_over_voltage]):
-            raise PydanticCustomError("not_rising", "voltage_v of power_over_voltage does not rise from point to point")
+        _check_order("voltage_v of power_over_voltage[{}]", [point.voltage_v for point in self.power_over_voltage], "V")
         return self
 
 
@@ -115,7 +120,8 @@ class Relay(Declaration):
     @model_validator(mode="after")
     def _closes_above(self) -> Relay:
         if not self.off_v < self.on_v:
-            raise PydanticCustomError("relay", "off_v is not below on_v")
+            volts = {"off": f"{self.off_v:.10g}", "on": f"{self.on_v:.10g}"}
+            raise PydanticCustomError("relay", "off_v is not below on_v: {off} V and {on} V", volts)
         return self
 
 
@@ -150,10 +156,8 @@ class SeriesMotorDrive(Declaration):
 
     @model_validator(mode="after")
     def _is_in_order(self) -> SeriesMotorDrive:
-        if not _rises([point.current_a for point in self.magnetisation]):
-            raise PydanticCustomError("not_rising", "current_a of magnetisation does not rise from point to point")
-        if not _rises([-step for step in self.field_steps_percent]):
-            raise PydanticCustomError("not_falling", "field_steps_percent does not fall from step to step")
+        _check_order("current_a of magnetisation[{}]", [point.current_a for point in self.magnetisation], "A")
+        _check_order("field_steps_percent[{}]", self.field_steps_percent, "%", falls=True)
         return self
 
 
@@ -179,7 +183,7 @@ class CurrentPoint(Declaration):
 
 
 class TableDrive(Declaration):
-    """Effort and current by points over speed and voltage; at part effort the losses are those of the full one."""
+    """Effort and current by points over speed and voltage; at part effort the current falls with the power."""
 
     kind: Literal["table"] = Field(description="Kind of drive.")
     effort: tuple[EffortPoint, ...] = Field(min_length=2, description="Greatest effort, by points.")

@@ -22,7 +22,7 @@ class Leg(Declaration):
     @model_validator(mode="after")
     def _has_a_length(self) -> Leg:
         if self.from_km == self.to_km:
-            raise PydanticCustomError("leg", "from_km and to_km are the same place")
+            raise PydanticCustomError("leg", "from_km and to_km are the same place: km {km}", {"km": f"{self.from_km:.10g}"})
         return self
 
 
@@ -62,7 +62,8 @@ class TrainRun(Declaration):
     @model_validator(mode="after")
     def _is_complete(self) -> TrainRun:
         if (self.train is None) == (not self.vehicles):
-            raise PydanticCustomError("train_run", "a run has either train or vehicles")
+            found = "both" if self.vehicles else "neither"
+            raise PydanticCustomError("train_run", "a run has either train or vehicles, found {found}", {"found": found})
         if self.start is None and not (self.calls and self.calls[0].departure is not None):
             raise PydanticCustomError("train_run", "a run has a start, or a first call with a departure")
         return self

@@ -113,7 +113,8 @@ class Vehicle(Declaration):
     @model_validator(mode="after")
     def _adheres_with_its_own_mass(self) -> Vehicle:
         if self.adhesive_mass_t is not None and self.adhesive_mass_t > self.mass_t + 1e-9:
-            raise PydanticCustomError("adhesive_mass", "adhesive_mass_t is greater than mass_t")
+            told = {"adhesive": f"{self.adhesive_mass_t:.10g}", "mass": f"{self.mass_t:.10g}"}
+            raise PydanticCustomError("adhesive_mass", "adhesive_mass_t is greater than mass_t: {adhesive} t and {mass} t", told)
         return self
 
 

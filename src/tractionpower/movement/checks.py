@@ -9,11 +9,14 @@ from tractionpower.alignment.axis import compile_axes
 from tractionpower.alignment.checks import check_ids
 from tractionpower.alignment.intervals import place_rows
 from tractionpower.errors import Problem
+from tractionpower.model.drive import InverterDrive
 from tractionpower.model.limits import VOLTAGE_NAMES, SystemVoltages, find_limit, system_voltages
 from tractionpower.model.rules import broken_rules
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.vehicle import Train, Vehicle
-from tractionpower.movement.compile import Routes
+from tractionpower.movement.category_checks import check_categories
+from tractionpower.movement.compile import Routes, knee_factor
+from tractionpower.movement.drive_checks import check_knee
 from tractionpower.movement.formation import form
 from tractionpower.movement.run_checks import Site, check_run
 from tractionpower.movement.stock_checks import check_train, check_vehicle
@@ -60,7 +63,8 @@ def check_movement(scenario: Scenario) -> list[Problem]:
     )
     paths = item_paths("timetable.trains", [run.id for run in runs])
     problems += _share((run.id, problem) for path, run in zip(paths, runs, strict=True) for problem in check_run(path, run, site))
-    return [*problems, *check_clock(paths, runs, scenario.clock), *_check_power_off(scenario)]
+    problems += check_clock(paths, runs, scenario.clock) + check_categories(scenario)
+    return problems + _check_default_knee(scenario, voltages) + _check_power_off(scenario)
 
 
 def _check_ids(scenario: Scenario) -> list[Problem]:
@@ -109,6 +113,15 @@ def _share(told: Iterable[tuple[str, Problem]]) -> list[Problem]:
             text = f"; likewise train{'s' * (len(others) > 1)} {listed(others)}"
             kept[k] = replace(kept[k], found=kept[k].found + text)
     return kept
+
+
+def _check_default_knee(scenario: Scenario, voltages: SystemVoltages | None) -> list[Problem]:
+    """Return an error if the knee of the system is too low for the inverter drives that have none of their own."""
+    drives = [vehicle.drive for vehicle in scenario.vehicles]
+    if not any(isinstance(drive, InverterDrive) and drive.knee_factor is None for drive in drives):
+        return []
+    system = scenario.supply.system
+    return check_knee(f"limits[{system} knee_factor]", knee_factor(scenario.limits, system), voltages)
 
 
 def _check_power_off(scenario: Scenario) -> list[Problem]:

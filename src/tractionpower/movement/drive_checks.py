@@ -17,18 +17,34 @@ from tractionpower.movement.telling import doubt, listed
 
 _ROUNDING = 1e-6
 
+LOWEST_KNEE = 1.05
+"""Voltage over U_min2 at which the knee must at least lie: nearer the current would fall in one leap."""
+
 
 def check_drive(path: str, drive: Drive, voltages: SystemVoltages | None) -> list[Problem]:
     """Return everything that is wrong or doubtful with a drive, which stands at `path` of the model.
 
     Without `voltages`, the limits of the system, what depends on them is left out.
     """
+    knee = check_knee(f"{path}.knee_factor", drive.knee_factor, voltages)
     if isinstance(drive, SeriesMotorDrive):
-        problems = _check_series_motors(path, drive)
+        problems = knee + _check_series_motors(path, drive)
         problems += _check_resistors(f"{path}.starting_resistors_ohm", drive, voltages)
         return problems + _check_relay(f"{path}.relay.on_v", drive.relay, voltages)
-    problems = _check_fold_back(path, drive, voltages)
+    problems = knee + _check_fold_back(path, drive, voltages)
     return problems + (_check_inverter(path, drive) if isinstance(drive, InverterDrive) else _check_table(path, drive, voltages))
+
+
+def check_knee(path: str, factor: float | None, voltages: SystemVoltages | None) -> list[Problem]:
+    """Return an error if the knee is not clear of U_min2, where the current has fallen to that of the auxiliaries."""
+    if factor is None or voltages is None or factor * voltages.u_n > LOWEST_KNEE * voltages.u_min2:
+        return []
+    found = f"{factor:g}, a knee at {factor * voltages.u_n:g} V"
+    least = LOWEST_KNEE * voltages.u_min2
+    allowed = f"above {least:g} V, {LOWEST_KNEE:g} of U_min2 = {voltages.u_min2:g} V"
+    if 0.0 < least < voltages.u_n:
+        allowed += f": above {least / voltages.u_n:.4g}"
+    return [Problem("low_knee", path, found, allowed, "raise it, or leave it out")]
 
 
 def _check_falls(path: str, name: str, values: Sequence[float]) -> list[Problem]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from tractionpower.errors import Problem
 from tractionpower.kernels.wayside import GRAVITY
-from tractionpower.model.drive import InverterDrive, TableDrive
+from tractionpower.model.drive import Drive, InverterDrive, TableDrive
 from tractionpower.model.limits import SystemVoltages
 from tractionpower.model.vehicle import Part, Resistance, Train, Vehicle
 from tractionpower.movement.drive_checks import check_drive
@@ -21,6 +21,10 @@ HEAVIEST_T_PER_AXLE = 45.0
 
 GREATEST_EFFORT_PER_WEIGHT = 0.6
 """Effort over weight that no adhesion allows."""
+
+
+GREATEST_POWER_KW = 20_000.0
+"""Power of one vehicle that none has; the strongest locomotives have some 10 MW, long units some 17 MW (recalled)."""
 
 
 def check_vehicle(vehicle: Vehicle, voltages: SystemVoltages | None, path: str = "") -> list[Problem]:
@@ -42,6 +46,7 @@ def check_vehicle(vehicle: Vehicle, voltages: SystemVoltages | None, path: str =
         problems.append(doubt("no_resistance", f"{path}.resistance", found, remedy="give a_n and more"))
     if vehicle.drive is not None:
         problems += check_drive(f"{path}.drive", vehicle.drive, voltages) + _check_effort(path, vehicle)
+        problems += _check_power(f"{path}.drive.power_kw", vehicle.drive) + _check_table_end(f"{path}.drive", vehicle)
     return problems + _check_brake(f"{path}.brake", vehicle)
 
 
@@ -123,6 +128,33 @@ def _check_effort(path: str, vehicle: Vehicle) -> list[Problem]:
     return [doubt("absurd_effort", f"{path}.drive.{where}", found, allowed, "correct effort or mass; efforts are in kN")]
 
 
+def _check_power(path: str, drive: Drive) -> list[Problem]:
+    """Return a warning for a power that no vehicle has, as from W taken for kW."""
+    if not isinstance(drive, InverterDrive) or drive.power_kw <= GREATEST_POWER_KW:
+        return []
+    return [doubt("absurd_power", path, f"{drive.power_kw:g} kW", f"up to {GREATEST_POWER_KW:g} kW", "is it in W?")]
+
+
+def _check_table_end(path: str, vehicle: Vehicle) -> list[Problem]:
+    """Return a warning if the points of a table end below the greatest speed: beyond them the last values hold."""
+    drive = vehicle.drive
+    if not isinstance(drive, TableDrive):
+        return []
+    for name, points, what in (
+        ("effort", drive.effort, "effort and losses stay those"),
+        ("current", drive.current, "the current stays that"),
+    ):
+        ends: dict[float | None, float] = {}
+        for point in points:
+            ends[point.voltage_v] = max(point.speed_kmh, ends.get(point.voltage_v, 0.0))
+        volts, end = min(ends.items(), key=lambda pair: pair[1])
+        if end < vehicle.max_speed_kmh:
+            where = "" if volts is None else f" at {volts:g} V"
+            found = f"the points{where} end at {end:g} km/h: {what} of {end:g} km/h up to {vehicle.max_speed_kmh:g} km/h"
+            return [doubt("short_table", f"{path}.{name}", found, remedy="add points up to max_speed_kmh, or lower it")]
+    return []
+
+
 def _check_brake(path: str, vehicle: Vehicle) -> list[Problem]:
     brake = vehicle.brake
     if brake.electric_effort_kn == 0.0:
@@ -134,4 +166,18 @@ def _check_brake(path: str, vehicle: Vehicle) -> list[Problem]:
     if brake.electric_power_kw == 0.0:
         found = f"an electric brake of {brake.electric_effort_kn:g} kN without power gives nothing"
         return [doubt("brake_without_power", f"{path}.electric_power_kw", found, remedy="give electric_power_kw")]
-    return []
+    return _check_brake_adhesion(f"{path}.electric_effort_kn", vehicle)
+
+
+def _check_brake_adhesion(path: str, vehicle: Vehicle) -> list[Problem]:
+    """Return a warning for an electric brake beyond the adhesion at standstill, which is greatest there."""
+    effort, adhesion = vehicle.brake.electric_effort_kn, vehicle.adhesion
+    if vehicle.adhesive_mass_t is None:
+        return []
+    share = adhesion.a_kmh / adhesion.b_kmh + adhesion.c
+    most = share * vehicle.adhesive_mass_t * GRAVITY
+    if effort <= most:
+        return []
+    found = f"{effort:g} kN of electric brake, adhesion limits it to {most:.1f} kN at standstill"
+    allowed = f"up to {most:.1f} kN, {share:.3g} of the weight of adhesive_mass_t = {vehicle.adhesive_mass_t:g} t"
+    return [doubt("brake_adhesion", path, found, allowed, "correct electric_effort_kn or adhesive_mass_t")]

@@ -48,13 +48,38 @@ def _check_dwell(path: str, call: Call) -> Iterator[Problem]:
 
 
 def check_clock(paths: Sequence[str], runs: Sequence[TrainRun], clock: Clock) -> list[Problem]:
-    """Return one warning for all runs that begin when the simulated time is over."""
-    late = [(path, run) for path, run in zip(paths, runs, strict=True) if start_time(run) >= clock.end]
-    if not late:
-        return []
-    path, first = late[0]
+    """Return one warning for all runs that begin when the simulated time is over, and one for those that end before it."""
+    placed = list(zip(paths, runs, strict=True))
+    late = [(path, run) for path, run in placed if start_time(run) >= clock.end]
+    early = [(path, run) for path, run in placed if _is_early(run, clock)]
+    problems = []
+    if late:
+        found = f"the clock ends at {format_time(clock.end)}: the co-simulation (`run`) leaves it out, `journey` runs it"
+        problems.append(_never_begins("begins_after_end", late, found, "let the clock end later, or leave it out"))
+    if early:
+        next_day = start_time(early[0][1]) + DAY_S
+        remedy = "let the clock start earlier, or leave it out"
+        if clock.start <= next_day < clock.end:
+            remedy = f"times of the next day go on beyond 24:00:00: write {format_time(next_day)}"
+        found = f"the clock starts at {format_time(clock.start)}: the run should be over by then"
+        problems.append(_never_begins("begins_before_clock", early, found, remedy))
+    return problems
+
+
+def _is_early(run: TrainRun, clock: Clock) -> bool:
+    """Return whether a run begins more than half a day before the clock, or its last planned time lies before it.
+
+    When a run ends that has no planned time behind its start is not known.
+    """
+    start = start_time(run)
+    times = [time for call in run.calls for time in (call.arrival, call.departure) if time is not None and time > start]
+    return start < clock.start - 0.5 * DAY_S or max(times, default=clock.start) < clock.start
+
+
+def _never_begins(code: str, placed: Sequence[tuple[str, TrainRun]], why: str, remedy: str) -> Problem:
+    path, first = placed[0]
     where = f"{path}.start.time" if first.start is not None else f"{path}.calls[0].departure"
-    found = f"begins at {format_time(start_time(first))}, the clock ends at {format_time(clock.end)}: it does not run"
-    if len(late) > 1:
-        found += f"; nor do {listed(sorted(run.id for _, run in late[1:]))}"
-    return [doubt("begins_after_end", where, found, remedy="let the clock end later, or leave it out")]
+    found = f"begins at {format_time(start_time(first))}, {why}"
+    if len(placed) > 1:
+        found += f"; likewise {listed(sorted(run.id for _, run in placed[1:]))}"
+    return doubt(code, where, found, remedy=remedy)

@@ -11,6 +11,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tractionpower.kernels.wayside import GRAVITY
 from tractionpower.movement.curves import TrainCurves
 from tractionpower.reporting.style import GREY, INK, PURPLE, STYLE, VERMILION, new_figure
 
@@ -75,6 +76,32 @@ def write_curves_csv(curves: TrainCurves, path: Path) -> Path:
     finally:
         temporary.unlink(missing_ok=True)
     return path
+
+
+def has_drive(nominal: TrainCurves) -> bool:
+    """Tell from curves at nominal voltage whether a train has a drive."""
+    return any(bool(curve.effort_n.any()) for curve in nominal.curves)
+
+
+def starting_gradient(nominal: TrainCurves) -> float:
+    """Return the steepest gradient on which a train can start [permille]; below 0 it needs a slope."""
+    surplus = float(nominal.curves[0].effort_n[0] - nominal.resistance_n[0.0][0])
+    return 1000.0 * surplus / (nominal.mass_kg * GRAVITY)
+
+
+def resistance_figure(curves: TrainCurves, title: str) -> Figure:
+    """Draw the resistances over speed of a train, or a vehicle, that has no drive."""
+    with mpl.rc_context(STYLE):
+        figure = new_figure(9.0, 5.0)
+        axes = figure.add_subplot()
+        top = ROOM * max(float(resistance.max()) for resistance in curves.resistance_n.values()) / 1000.0
+        _draw_resistances(axes, curves, top)
+        axes.set_xlim(0.0, 3.6 * float(curves.speed_mps[-1]))
+        axes.set_ylim(0.0, top)
+        axes.set(xlabel="speed [km/h]", ylabel="resistance [kN]")
+        axes.legend(loc="upper left", bbox_to_anchor=(1.06, 1.0), fontsize=8, handlelength=3.0)
+        figure.suptitle(f"{title}, no drive", x=0.01, ha="left", fontsize=11)
+        return figure
 
 
 def curves_figure(curves: TrainCurves, title: str) -> Figure:

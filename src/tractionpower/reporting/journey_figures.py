@@ -25,6 +25,9 @@ WIDTH, PANEL, STRIP, NAMES = 10.0, 2.1, 0.8, 1.4
 
 CEILING = "ceiling: limits under the\nwhole train, braking curves"
 
+SAME_S = 1e-6
+"""Times that differ by less are the same [s]."""
+
 LETTER = 0.075
 """Width of a letter of a station's name [inches]."""
 
@@ -87,8 +90,9 @@ def journey_figure(journey: Journey, stations: Sequence[tuple[float, str]], titl
         _draw_speed(panels[0], journey, course, place)
         if hilly:
             _draw_height(panels[1], path, course)
-        _draw_efforts(panels[-2], rows, course, place)
-        _draw_current(panels[-1], rows, course, place, path)
+        whole = whole_rows(journey)
+        _draw_efforts(panels[-2], rows[:whole], course, place[: whole + 1])
+        _draw_current(panels[-1], rows[:whole], course, place[: whole + 1], path)
         ends = course.at([0.0, path.length_m])
         margin = 0.01 * (ends[1] - ends[0])
         panels[-1].set_xlim(ends[0] - margin, ends[1] + margin)
@@ -99,6 +103,16 @@ def journey_figure(journey: Journey, stations: Sequence[tuple[float, str]], titl
         return figure
 
 
+def whole_rows(journey: Journey) -> int:
+    """Return how many rows the train is on the line from their start to their end.
+
+    One that leaves within a step has means over the whole step in its last row, which are no forces of a train.
+    """
+    rows = journey.rows
+    present = journey.finished_s - rows["time_s"][-1]
+    return max(1, len(rows) - int(present < journey.seconds[-1] - SAME_S))
+
+
 def _draw_speed(axes: Axes, journey: Journey, course: Course, place: Array) -> None:
     path, rows = journey.path, journey.rows
     at, ceiling = _ceiling(journey)
@@ -107,7 +121,7 @@ def _draw_speed(axes: Axes, journey: Journey, course: Course, place: Array) -> N
     at = course.at(np.append(path.limit_from_m, path.length_m))
     _stairs(axes, at, limit, color=GREY, linewidth=1.0, label="permitted speed of the line")
     last = rows[-1]
-    end = max(0.0, last["v_mps"] + last["acceleration_mps2"] * (journey.finished_s - last["time_s"]))
+    end = max(0.0, last["v_mps"] + last["acceleration_mps2"] * journey.seconds[-1])  # a mean over the whole row
     speed = 3.6 * np.append(rows["v_mps"], end)
     axes.plot(course.at(place), speed, color=BLUE, linewidth=1.5, label="speed")
     if journey.status != "complete":

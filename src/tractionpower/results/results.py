@@ -31,6 +31,10 @@ class Results:
     key_figures: list[dict[str, Any]]
     _source: dict[str, pa.Table] | Path
 
+    def __repr__(self) -> str:
+        rows = ", ".join(f"{name} ({self._row_count(name)} rows)" for name in self.tables)
+        return f"<Results of study {self.run.get('study', '')!r}, {self.run.get('status', 'unknown')}; tables: {rows or 'none'}>"
+
     @classmethod
     def open(cls, folder: str | Path) -> Results:
         """Open a folder that a run has written.
@@ -66,6 +70,14 @@ class Results:
         table = source[name] if isinstance(source, dict) else pq.read_table(source / written_as(self.run, f"{name}.parquet"))
         frame: pd.DataFrame = table.to_pandas()
         return frame
+
+    def _row_count(self, name: str) -> int | str:
+        if isinstance(self._source, dict):
+            return int(self._source[name].num_rows)
+        try:
+            return int(pq.read_metadata(self._source / written_as(self.run, f"{name}.parquet")).num_rows)
+        except (OSError, pa.ArrowInvalid):  # gone since it was opened
+            return "?"
 
     def key_figure(self, name: str, place: str = "") -> float:
         """Return the value of a key figure, by name and, where there are several, by place.

@@ -6,10 +6,12 @@ scheduled timetable *rozklad jazdy* (RJ).
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from numbers import Real
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -31,6 +33,9 @@ from tractionpower.results.trains import CallRow, calls_table, train_figures, tr
 from tractionpower.results.versions import versions
 
 Form = Literal["time", "speed"]
+
+LEAST_STEP_S, MOST_STEP_S = 0.02, 5.0
+"""Steps that are allowed [s]."""
 
 AT_END_M = 0.1
 """A call this near to the start or the end of a run is its first or its last one [m]."""
@@ -103,14 +108,17 @@ def compute_journeys(
     InputError
         If the study has errors; all of them are told.
     UsageError
-        If it has no trains, or not those that are asked for.
+        If an option is not allowed, or the study has no trains, or not those that are asked for.
     """
     started = time.perf_counter()
+    _check_options(voltage_v, step_s, form)
     wanted = choose_runs(scenario, runs)
     problems = check_scenario(scenario)
     raise_errors(problems)
-    voltage = system_voltages(scenario.limits, scenario.supply.system).u_n if voltage_v is None else voltage_v
-    journeys = tuple(theoretical_journeys(scenario, voltage_v=voltage, step_s=step_s, form=form, runs=wanted))
+    voltage = system_voltages(scenario.limits, scenario.supply.system).u_n if voltage_v is None else float(voltage_v)
+    step = scenario.clock.step_s if step_s is None else float(step_s)
+    prepared = time.perf_counter()
+    journeys = tuple(theoretical_journeys(scenario, voltage_v=voltage, step_s=step, form=form, runs=wanted))
     calls = {journey.run.id: call_rows(journey) for journey in journeys}
     for journey in journeys:
         writer.append("trains", _trains_table(journey))
@@ -118,24 +126,58 @@ def compute_journeys(
     if every_call:
         writer.append("calls", calls_table(every_call))
     figures = [figure.as_dict() for journey in journeys for figure in _figures(journey)]
-    how = {"voltage_v": voltage, "step_s": scenario.clock.step_s if step_s is None else step_s, "form": form}
-    run = _summary(scenario, study, journeys) | {"wall_seconds": time.perf_counter() - started, **how}
+    how = {"voltage_v": voltage, "step_s": step, "form": form}
+    times = {"wall_seconds": time.perf_counter() - prepared, "compile_seconds": prepared - started}
+    run = _summary(scenario, study, journeys) | times | how
     return JourneyOutcome(journeys, voltage, calls, figures, run, tuple(problems))
 
 
-def journeys(scenario: Scenario, **options: Any) -> Results:
-    """Return the theoretical journeys of a study as results in memory; options as for `compute_journeys`.
+def journeys(
+    scenario: Scenario,
+    *,
+    voltage_v: float | None = None,
+    step_s: float | None = None,
+    form: Form = "time",
+    runs: Sequence[str] | None = None,
+) -> Results:
+    """Return the theoretical journeys of a study as results in memory.
+
+    Parameters
+    ----------
+    scenario
+        The study.
+    voltage_v
+        Voltage at the pantograph [V]; left out: the nominal voltage of the system.
+    step_s
+        Step [s], 0.02 to 5; left out: that of the clock.
+    form
+        ``time`` integrates in time steps, ``speed`` over speed.
+    runs
+        Trains of the timetable; left out: all.
 
     Raises
     ------
     InputError
         If the study has errors; all of them are told.
     UsageError
-        If it has no trains, or not those that are asked for.
+        If an option is not allowed, or the study has no trains, or not those that are asked for.
     """
     writer = MemoryWriter()
-    outcome = compute_journeys(scenario, writer, **options)
+    outcome = compute_journeys(scenario, writer, voltage_v=voltage_v, step_s=step_s, form=form, runs=runs)
     return Results(outcome.run, outcome.key_figures, writer.tables())
+
+
+def _check_options(voltage_v: Any, step_s: Any, form: Any) -> None:
+    if form not in get_args(Form):
+        raise UsageError(f"form {shown(form)}: allowed are {' and '.join(get_args(Form))}")
+    if voltage_v is not None and not (_is_finite(voltage_v) and voltage_v > 0.0):
+        raise UsageError(f"voltage_v {shown(voltage_v)}: allowed are finite numbers above 0 V")
+    if step_s is not None and not (_is_finite(step_s) and LEAST_STEP_S <= step_s <= MOST_STEP_S):
+        raise UsageError(f"step_s {shown(step_s)}: allowed are {LEAST_STEP_S:g} to {MOST_STEP_S:g} s")
+
+
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _summary(scenario: Scenario, study: str, journeys: Sequence[Journey]) -> dict[str, Any]:
@@ -152,6 +194,7 @@ def _summary(scenario: Scenario, study: str, journeys: Sequence[Journey]) -> dic
         "versions": versions(),
         "steps": sum(len(journey.rows) for journey in journeys),
         "ledgers": ledgers,
+        "verdicts": [],
         "journeys": [_note(journey) for journey in journeys],
     }
 
