@@ -49,7 +49,9 @@ def test_adhesion_without_a_limit_and_no_electric_brake():
 
 
 def test_a_train_without_effort_is_drawn():
-    curves_figure(make_curves([2000.0]), "no effort at all").canvas.draw()
+    figure = curves_figure(make_curves([2000.0]), "no effort at all")
+    figure.canvas.draw()
+    assert all(np.isfinite(limit) for axes in figure.axes for limit in (*axes.get_xlim(), *axes.get_ylim()))
 
 
 def test_the_table_on_disk(tmp_path):

@@ -77,9 +77,9 @@ TRAIN = np.dtype(
 )
 """A train on its route; equal powered vehicles are one drive, efforts and currents added up."""
 
-KNOT = np.dtype([("at_m", "f8"), ("height_m", "f8"), ("added_m", "f8"), ("drag_kg", "f8")])
-"""Additional resistance, summed up from the start of the route: height, curves and tunnels as a height [N/N m], and what
-tunnels add to c [N s2/m2 m]. Straight between knots, level before the first and behind the last."""
+KNOT = np.dtype([("at_m", "f8"), ("height_m", "f8"), ("drag_kg", "f8")])
+"""Additional resistance, summed up from the start of the route: height, with curves and tunnels as a height [N/N m], and
+what tunnels add to c [N s2/m2 m]. Straight between knots, level before the first and behind the last."""
 
 PIECE = np.dtype([("from_m", "f8"), ("w", "f8"), ("dw", "f8")])
 """Speed ceiling: v2 = w + dw (s - from_m) from `from_m` to the next piece [m2/s2, m/s2]; at a stop it comes down to 0.

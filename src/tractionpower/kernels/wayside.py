@@ -7,37 +7,60 @@ from tractionpower.kernels.jit import inlined
 GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s2] (ISO 80000-3)."""
 
-
 _POINT_M = 1e-3
 """Shortest way over which the resistance under the front is taken [m]."""
 
 
 @inlined
-def _profile(knots, first, last, i, at):
-    """Return the knot before `at` [m], searched from the knot `i`, and height, added resistance and drag there."""
+def _find(knots, first, last, i, at):
+    """Return the knot before `at` [m], searched from the knot `i`."""
     while i < last and knots[i + 1].at_m <= at:
         i += 1
     while i > first and knots[i].at_m > at:
         i -= 1
+    return i
+
+
+@inlined
+def _profile(knots, last, i, at):
+    """Return height and drag at a place `at` [m] behind the knot `i`, or before the first knot."""
     here = knots[i]
     if i == last or at <= here.at_m:
-        return i, here.height_m, here.added_m, here.drag_kg
+        return here.height_m, here.drag_kg
     after = knots[i + 1]
     x = (at - here.at_m) / (after.at_m - here.at_m)
-    return (
-        i,
-        here.height_m + x * (after.height_m - here.height_m),
-        here.added_m + x * (after.added_m - here.added_m),
-        here.drag_kg + x * (after.drag_kg - here.drag_kg),
-    )
+    return here.height_m + x * (after.height_m - here.height_m), here.drag_kg + x * (after.drag_kg - here.drag_kg)
+
+
+@inlined
+def _mean_profile(knots, last, i, at, way):
+    """Return the means of height and drag over a `way` [m] from `at` [m] on, which lies behind the knot `i`."""
+    height, drag = _profile(knots, last, i, at)
+    if way <= 0.0:
+        return height, drag
+    heights = drags = 0.0
+    end, x = at + way, at
+    while x < end:
+        while i < last and knots[i + 1].at_m <= x:
+            i += 1
+        corner = end
+        if knots[i].at_m > x:  # before the first knot
+            corner = knots[i].at_m
+        elif i < last:
+            corner = knots[i + 1].at_m
+        until = min(end, corner)
+        height_after, drag_after = _profile(knots, last, i, until)
+        heights += 0.5 * (height + height_after) * (until - x)
+        drags += 0.5 * (drag + drag_after) * (until - x)
+        x, height, drag = until, height_after, drag_after
+    return heights / way, drags / way
 
 
 @inlined
 def additional_resistance(tables, train, mover, s, way):
-    """Return the resistance by gradient, curves and tunnels on a `way` [m] in whose middle the front is at `s` [m].
+    """Return the mean resistance by gradient, curves and tunnels on a `way` [m] in whose middle the front is at `s` [m].
 
-    They act as their mean under the train, which for gradients is m g (z(s) - z(s - L)) / L; where they act under the
-    front alone, as their mean over the way.
+    They act as their mean under the train, which for gradients is m g (z(s) - z(s - L)) / L, or under the front alone.
 
     Returns
     -------
@@ -50,15 +73,16 @@ def additional_resistance(tables, train, mover, s, way):
     last = first + train.knots - 1
     if last <= first:
         return 0.0, 0.0
-    length = train.spread_m
-    if length == 0.0:
+    length, start = train.spread_m, s - 0.5 * way
+    if length == 0.0:  # the mean over the way is that under a train as long as the way
         length = max(way, _POINT_M)
-        s += 0.5 * length
-    i, height, added, drag = _profile(knots, first, last, first + mover.front, s)
-    j, tail_height, tail_added, tail_drag = _profile(knots, first, last, first + mover.tail, s - length)
+        start, way = s + 0.5 * length, 0.0
+    i = _find(knots, first, last, first + mover.front, start)
+    j = _find(knots, first, last, first + mover.tail, start - length)
     mover.front, mover.tail = i - first, j - first
-    rise = (height - tail_height + added - tail_added) / length
-    return train.mass_kg * GRAVITY * rise, (drag - tail_drag) / length
+    height, drag = _mean_profile(knots, last, i, start, way)
+    tail_height, tail_drag = _mean_profile(knots, last, j, start - length, way)
+    return train.mass_kg * GRAVITY * (height - tail_height) / length, (drag - tail_drag) / length
 
 
 @inlined

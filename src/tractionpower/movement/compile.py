@@ -243,8 +243,8 @@ def _train_row(item: PlannedRun, voltages: SystemVoltages, knee: float, pools: _
 def _knots(item: PlannedRun) -> Any:
     path, (single, double) = item.path, item.formation.tunnel
     knots = np.zeros(len(path.at_m), KNOT)
-    knots["at_m"], knots["height_m"] = path.at_m, path.height_m
-    knots["added_m"] = path.curve_m + single[0] * path.single_tunnel_m + double[0] * path.double_tunnel_m
+    height = path.height_m + path.curve_m + single[0] * path.single_tunnel_m + double[0] * path.double_tunnel_m
+    knots["at_m"], knots["height_m"] = path.at_m, height
     knots["drag_kg"] = single[1] * path.single_tunnel_m + double[1] * path.double_tunnel_m
     return knots
 

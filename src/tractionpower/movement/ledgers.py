@@ -14,7 +14,7 @@ from tractionpower.movement.formation import Formation
 Floats = NDArray[np.float64]
 
 MECHANICAL_SHARE = 1e-3
-"""The mechanical ledger closes within this share of what is exchanged, at steps up to 1 s."""
+"""The mechanical ledger closes within this share of what is exchanged."""
 
 ELECTRIC_SHARE = 1e-6
 """The ledger from pantograph to wheel closes within this share."""
@@ -89,8 +89,7 @@ def mechanical_ledger(
             "resistance": float(running + mass.mass_kg * GRAVITY * (curves[1] - curves[0]) + dragged),
             "brakes": brakes,
         },
-        # The slope under the train is taken once a step, in its middle: an error of second order.
-        MECHANICAL_SHARE * max(1.0, float(seconds.max(initial=0.0))) ** 2,
+        MECHANICAL_SHARE,
     )
 
 
