@@ -138,7 +138,7 @@ def test_of_many_trains_the_first_twelve_or_those_named_get_figures(monkeypatch,
     names = [f"T{k:02d}" for k in range(14)]
     made = tuple(make_journey(line, name, start_s=21600.0 + 60.0 * k) for k, name in enumerate(names))
     said = {"status": "complete", "ledgers": {}}
-    outcome = studies.JourneyOutcome(made, 3000.0, {each.run.id: studies.call_rows(each) for each in made}, run=said)
+    outcome = studies.JourneyOutcome(made, 3000.0, {each.run.id: [] for each in made}, run=said)
     drawn = []
 
     def compute(*arguments, **options):

@@ -3,12 +3,7 @@
 import pytest
 from small_studies import load, make_scenario
 
-from tractionpower.cosimulation.check import check_coupling, check_scenario
-from tractionpower.cosimulation.run import Run
-from tractionpower.errors import InputError
-from tractionpower.model.timetable import Leg, Start, Timetable, TrainRun
-from tractionpower.model.vehicle import Part
-from tractionpower.results.store import MemoryWriter
+from tractionpower.cosimulation.check import check_scenario
 
 
 def problems_of(*loads, **more):
@@ -17,21 +12,6 @@ def problems_of(*loads, **more):
 
 def test_a_sound_scenario_has_none():
     assert problems_of(load("x")) == {}
-
-
-def test_a_run_with_trains_is_refused_in_this_version():
-    scenario = make_scenario(load("x"))
-    assert check_coupling(scenario) == []
-    train = TrainRun(
-        id="7", vehicles=(Part(id="a"),), route=(Leg(track="1", from_km=0.0, to_km=20.0),), start=Start(time="00:00")
-    )
-    scenario = scenario.model_copy(update={"timetable": Timetable(trains=(train,))})
-    with pytest.raises(InputError) as caught:
-        Run(scenario, MemoryWriter())
-    told = {problem.code: problem for problem in caught.value.problems}["trains_not_coupled_yet"]
-    assert (told.path, told.found) == ("timetable.trains", "1 train")
-    assert "tractionpower journey" in told.remedy
-    assert "trains_not_coupled_yet" not in {problem.code for problem in check_scenario(scenario)}
 
 
 def test_problems_of_line_supply_clock_and_output_come_together():

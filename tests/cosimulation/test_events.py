@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from small_studies import load, make_scenario, run_in_memory
 
 from tractionpower.cosimulation.events import EventLog
+from tractionpower.kernels.block_tables import STEP_RESULT
 from tractionpower.kernels.network import CONVERGED, FLAG_A, NOT_CONVERGED, NOT_SERVABLE
-from tractionpower.kernels.tables import STEP_RESULT
 from tractionpower.supply.compile import compile_network
 
 BYPASSED = [{"id": "C", "km": 10.0, "state": "bypassed"}]
@@ -31,7 +31,7 @@ def steps_of(*rows):
 
 
 def log_of(*rows, cuts=()):
-    log = EventLog(SUPPLY, STEP_S)
+    log = EventLog(SUPPLY, STEP_S, 100.0)
     bounds = [0, *cuts, len(rows)]
     for first, end in itertools.pairwise(bounds):
         log.add(100.0 + STEP_S * np.arange(first, end), steps_of(*rows[first:end]))
@@ -117,7 +117,7 @@ def test_a_demand_that_cannot_be_served_is_cut_and_told(more, spells):
     steps = 3 if more else 10
     assert outcome.flagged
     assert (outcome.run["status"], outcome.run["flagged_steps"]) == ("flagged", steps)
-    events = results.table("events")
+    events = results.table("events").query("kind == 'not_servable'").reset_index()
     assert len(events) == spells
     assert tuple(events.loc[0, ["kind", "subject", "track", "position_km"]]) == ("not_servable", "train", "1", 10.0)
     assert events.loc[0, "time_s"] == (3.0 if more else 0.0)
@@ -142,7 +142,11 @@ def test_two_spells_are_two_events():
     ]
     demands = [demand | {"from": float(demand["from"]), "to": float(demand["to"])} for demand in demands]
     results, _, _ = run_in_memory(make_scenario(*demands, section_cabins=BYPASSED))
-    assert list(results.table("events")["time_s"]) == [2.0, 6.0]
+    events = results.table("events")
+    assert list(events.query("kind == 'not_servable'")["time_s"]) == [2.0, 6.0]
+    (violated,) = events.query("kind == 'limit_violated'").to_dict("records")
+    assert (violated["subject"], violated["limit"]) == ("lowest voltage", 2000.0)
+    assert violated["value"] < 2000.0
 
 
 def test_a_step_that_is_served_again_is_served_in_full():

@@ -22,7 +22,7 @@ CONTRACT = {
     },
     "profile": {
         "km": "float64", "track": "category", "lowest_voltage_v": "float32", "mean_voltage_v": "float32",
-        "highest_voltage_v": "float32", "count": "int32",
+        "highest_voltage_v": "float32", "count": "int32", "where": "category",
     },
     "events": {
         "time_s": "float64", "kind": "category", "subject": "category", "track": "category", "position_km": "float64",

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_studies import load, make_scenario
 
-from tractionpower.cosimulation.run import Run, compile_block
+from tractionpower.cosimulation.run import Run
+from tractionpower.cosimulation.tables import compile_scenario
 from tractionpower.kernels.block import advance
-from tractionpower.kernels.tables import BUFFER_FULL, DONE, copy_state, new_buffers, new_state
+from tractionpower.kernels.block_tables import BUFFER_FULL, DONE, copy_state, new_buffers, new_state
 from tractionpower.results.store import MemoryWriter
-from tractionpower.supply.compile import compile_network
 
 STEPS = 60
 
@@ -28,7 +28,7 @@ SCENARIO = make_scenario(
 
 
 def fresh_tables():
-    return compile_block(SCENARIO, compile_network(SCENARIO.supply, SCENARIO.line, SCENARIO.limits))
+    return compile_scenario(SCENARIO).block
 
 
 def rows_of(buffers, steps):
@@ -132,10 +132,10 @@ def test_key_figures_and_events_depend_on_no_block_either(cuts):
 def summed_up(cuts):
     writer = MemoryWriter()
     run = Run(SCENARIO, writer)
-    state = new_state(run.tables)
+    tables = run.compiled.block
     for first, end in pairwise([0, *cuts, STEPS]):
-        buffers = new_buffers(run.tables, STEPS)
-        advance(run.tables, state, buffers, end)
+        buffers = new_buffers(tables, STEPS)
+        advance(tables, run.state, buffers, end)
         run.recorder.add(first, end - first, buffers)
     run.recorder.close()
     tables = {name: table.to_pandas() for name, table in writer.tables().items()}

@@ -5,9 +5,10 @@ import pytest
 from random_trains import random_study
 from small_trains import BRAKE, SERIES_MOTORS, TABLE, Stepper, make_trains, run
 
+from tractionpower.kernels.demand import demand_current
 from tractionpower.kernels.jit import njit
-from tractionpower.kernels.pantograph import feed_back_share, traction
-from tractionpower.kernels.train_step import midpoint_of, wish
+from tractionpower.kernels.pantograph import feed_back_share
+from tractionpower.kernels.train_step import wish
 
 VOLTAGES = np.linspace(200.0, 4200.0, 8001)
 
@@ -15,14 +16,12 @@ VOLTAGES = np.linspace(200.0, 4200.0, 8001)
 @njit
 def take(tables, state, t, h, voltages, currents):
     wish(tables, state, 0, t, h)
-    train, mover, trial, tally = tables.trains[0], state.movers[0], state.trials[0], state.wishes[0]
+    train, trial, tally = tables.trains[0], state.trials[0], state.wishes[0]
     if tally.moving_s <= 0.0:
         return 0.0
-    need_w = tally.line_j / tally.moving_s
     for n in range(voltages.shape[0]):
-        lines = (voltages[n], 1e300)
-        _, currents[n], _, _ = traction(tables, train, trial, need_w, lines, midpoint_of(train, mover, tally))
-    return need_w
+        currents[n], _ = demand_current(tables, train, trial, state.demands[0], voltages[n])
+    return state.demands[0].need_w
 
 
 @pytest.mark.parametrize("first", [0, 8, 16, 24])
@@ -50,7 +49,7 @@ def share_of(tables, u):
 
 def test_a_dead_line_takes_nothing_back():
     stepper = Stepper(make_trains(20.0, brake=BRAKE, speed_kmh=144.0, auxiliaries={"power_kw": 50.0}))
-    assert [share_of(stepper.tables, u) for u in (-50.0, 0.0, 1000.0, 2000.0, 3600.0)] == [0.0, 0.0, 0.25, 1.0, 1.0]
+    assert [share_of(stepper.tables, u) for u in (2000.0, 3600.0, 3750.0, 3900.0)] == [1.0, 1.0, 0.5, 0.0]
     stop = {"stations": {"Z": 3.0}, "calls": [{"station": "Z"}], "speed_kmh": 90.0}
     for voltage in (0.0, -50.0):
         rows = run(3.0, brake=BRAKE, voltage_v=voltage, limits=[(-1.0, 4.0, 90.0)], drive=None if voltage else TABLE, **stop).rows

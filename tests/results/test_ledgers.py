@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tractionpower.kernels.tables import STEP_RESULT
+from tractionpower.kernels.block_tables import STEP_RESULT
 from tractionpower.results.ledgers import ElectricLedger
 
 SEEDS = st.integers(0, 2**32)

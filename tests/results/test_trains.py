@@ -5,7 +5,7 @@ import pytest
 
 from tractionpower.kernels.train_tables import BY_ADHESION, COASTING, LIMITED_BY, PHASES, TRAIN_ROW
 from tractionpower.results.columns import TABLES
-from tractionpower.results.trains import CallRow, calls_table, train_figures, trains_table
+from tractionpower.results.trains import CallRow, calls_table, sum_up, train_figures, trains_table
 
 CONTRACT = {
     "trains": (
@@ -103,9 +103,8 @@ def test_key_figures_of_a_journey():
     rows["time_s"], rows["v_mps"] = [3600.0, 3601.0, 3603.0], [0.0, 20.0, 10.0]
     rows["power_w"], rows["returned_w"] = [3.6e6, 1.8e6, -7.2e5], [0.0, 0.0, 7.2e5 + 3.6e4]  # takes a little while it returns
     rows["current_a"] = [1000.0, 1200.0, -300.0]
-    figures = {
-        f.name: f for f in train_figures("7", rows, np.array([1.0, 2.0, 1.0]), length_m=900.0, journey_s=100.0, running_s=90.0)
-    }
+    summary = sum_up("7", rows, np.array([1.0, 2.0, 1.0]), length_m=900.0, journey_s=100.0, running_s=90.0)
+    figures = {f.name: f for f in train_figures(summary)}
     assert {f.place for f in figures.values()} == {"train 7"}
     assert figures["length_km"].value == 0.9
     assert (figures["running_time_s"].value, figures["journey_time_s"].value) == (90.0, 100.0)
@@ -118,5 +117,5 @@ def test_key_figures_of_a_journey():
 
 
 def test_a_train_that_did_not_move_has_no_mean_speed():
-    figures = train_figures("7", np.zeros(1, TRAIN_ROW), np.ones(1), length_m=0.0, journey_s=60.0, running_s=0.0)
+    figures = train_figures(sum_up("7", np.zeros(1, TRAIN_ROW), np.ones(1), length_m=0.0, journey_s=60.0, running_s=0.0))
     assert {f.name: f.value for f in figures}["mean_speed_kmh"] == 0.0

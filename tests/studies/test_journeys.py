@@ -17,7 +17,6 @@ from tractionpower.model.change import apply_changes
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter
 from tractionpower.studies.journeys import (
-    call_rows,
     choose_runs,
     compute_journeys,
     end_of,
@@ -44,42 +43,6 @@ def computed(scenario):
 
 
 # --- made by hand
-
-
-def test_a_run_begins_without_an_arrival_and_ends_without_a_departure():
-    rows = call_rows(make_journey(make_line(), "7"))
-    assert [(row.station, row.kind) for row in rows] == [
-        ("A", "departure"), ("B", "arrival"), ("B", "departure"), ("C", "pass"), ("D", "arrival"),
-    ]  # fmt: skip
-    assert {row.train for row in rows} == {"7"}
-    arrival, departure = rows[1:3]
-    assert (arrival.planned_s, departure.planned_s) == (START + 300.0, START + 330.0)
-    assert departure.dwell_s == pytest.approx(30.0)
-    assert math.isnan(arrival.dwell_s)
-    assert departure.actual_s == arrival.actual_s + 30.0
-    assert math.isnan(rows[3].planned_s)
-
-
-def test_calls_that_a_stuck_train_does_not_reach_have_their_plan_only():
-    rows = call_rows(make_journey(make_line(), "7", stuck_m=3000.0))
-    last = rows[-1]
-    assert (last.station, last.planned_s) == ("D", START + 660.0)
-    assert math.isnan(last.actual_s)
-    assert math.isnan(last.late_s)
-
-
-def test_a_passing_time_is_held_against_the_plan():
-    journey = make_journey(make_line(), "7")
-    (passing,) = [call for call in journey.calls if call.kind == "pass"]
-    passing = replace(passing, planned_departure_s=START + 400.0, arrival_s=START + 390.0)
-    (row,) = call_rows(replace(journey, calls=(passing,)))
-    assert (row.kind, row.late_s) == ("pass", -10.0)
-
-
-def test_a_planned_departure_at_the_end_is_a_row():
-    journey = make_journey(make_line(), "7")
-    last = replace(journey.calls[-1], planned_departure_s=START + 700.0, departure_s=journey.finished_s)
-    assert [row.kind for row in call_rows(replace(journey, calls=(last,)))] == ["arrival", "departure"]
 
 
 def test_where_and_why_a_train_is_stuck():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tractionpower.alignment.checks import check_line
+from tractionpower.cosimulation.route_checks import check_contact_lines
 from tractionpower.errors import Problem
 from tractionpower.model.base import format_time
 from tractionpower.model.scenario import Clock, Scenario
@@ -15,7 +16,7 @@ from tractionpower.supply.checks import check_supply
 
 def check_scenario(scenario: Scenario) -> list[Problem]:
     """Return every problem of a scenario whose parts are well formed; an empty list if there is none."""
-    return [
+    problems = [
         *check_line(scenario.line),
         *check_supply(scenario.supply, scenario.line, scenario.limits),
         *check_movement(scenario),
@@ -23,19 +24,9 @@ def check_scenario(scenario: Scenario) -> list[Problem]:
         *_check_output(scenario),
         *_check_connections(scenario),
     ]
-
-
-def check_coupling(scenario: Scenario) -> list[Problem]:
-    """Return what a run of trains and network in one cannot do in this version."""
-    trains = len(scenario.timetable.trains)
-    if not trains:
-        return []
-    found = f"{trains} train{'s' if trains > 1 else ''}"
-    remedy = (
-        "this version computes theoretical journeys of trains (tractionpower journey), and networks with loads; the"
-        " co-simulation of both comes with the next one: leave the timetable out, or use tractionpower journey STUDY"
-    )
-    return [Problem("trains_not_coupled_yet", "timetable.trains", found, "none in a run", remedy)]
+    if not any(problem.severity == "error" for problem in problems):
+        problems += check_contact_lines(scenario)
+    return problems
 
 
 def step_count(clock: Clock) -> int:

@@ -1,7 +1,8 @@
-"""Events of a run: spells of steps that could not be served or did not converge."""
+"""Events of a run: spells of steps that could not be served or did not converge, blocked substations, violated limits."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -10,7 +11,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from tractionpower.kernels.network import CONVERGED, FLAG_A, NOT_CONVERGED, NOT_SERVABLE
-from tractionpower.model.base import format_time
+from tractionpower.model.base import format_time, parse_time
+from tractionpower.results.spells import TOLERANCE_V
 from tractionpower.results.tables import make_table
 from tractionpower.supply.compile import SupplyTables
 
@@ -20,12 +22,14 @@ KINDS = {NOT_SERVABLE: "not_servable", NOT_CONVERGED: "not_converged"}
 class EventLog:
     """Turns the status of the steps into events, one for each unbroken spell of the same kind and place."""
 
-    def __init__(self, supply: SupplyTables, step_s: float) -> None:
-        self.step_s, self.supply = step_s, supply
+    def __init__(self, supply: SupplyTables, step_s: float, start_s: float) -> None:
+        self.step_s, self.supply, self.start_s = step_s, supply, start_s
         self.load_of_port = {int(port): load for port, load in zip(supply.load_port, supply.loads, strict=True)}
         self.rows: list[dict[str, Any]] = []
         self.flagged_steps = 0
         self._last = (CONVERGED, -1)
+        self._last_row: dict[str, Any] = {}
+        self._blocked: dict[int, dict[str, Any]] = {}
 
     def add(self, time_s: NDArray[np.float64], steps: NDArray[np.void]) -> None:
         """Look at steps, records of `tractionpower.kernels.tables.STEP_RESULT`."""
@@ -46,39 +50,109 @@ class EventLog:
         value = float(spell["factor"].min() if unserved else spell["worst_a"].max())
         if kind != self._last:
             load = self.load_of_port.get(kind[1])
-            self.rows.append(
-                {
-                    "time_s": float(time_s[0]), "kind": KINDS[kind[0]], "subject": load.id if load else "network",
-                    "track": load.track if load else "", "position_km": load.km if load else np.nan,
-                    "value": value, "limit": 1.0 if unserved else FLAG_A,
-                }
-            )  # fmt: skip
-        row = self.rows[-1]
+            self._last_row = {
+                "time_s": float(time_s[0]), "kind": KINDS[kind[0]], "subject": load.id if load else "network",
+                "track": load.track if load else "", "position_km": load.km if load else np.nan,
+                "value": value, "limit": 1.0 if unserved else FLAG_A,
+            }  # fmt: skip
+            self.rows.append(self._last_row)
+        row = self._last_row
         row["end_s"] = float(time_s[-1]) + self.step_s
         row["value"] = (min if unserved else max)(row["value"], value)
 
+    def add_blocked(self, time_s: NDArray[np.float64], busbar_v: NDArray[np.float64], no_load_v: NDArray[np.float64]) -> None:
+        """Look at busbar voltages and no-load voltages [V]: what lies above lets no rectifier feed."""
+        with np.errstate(invalid="ignore"):
+            blocked = busbar_v > no_load_v + TOLERANCE_V
+        for k in range(blocked.shape[1]):
+            edges = np.flatnonzero(np.diff(blocked[:, k].astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
+            before = self._blocked.pop(k, None)
+            for first, end in edges.tolist():
+                highest, until = float(busbar_v[first:end, k].max()), float(time_s[end - 1]) + self.step_s
+                row = before if first == 0 and before is not None else None
+                if row is None:
+                    substation = self.supply.substations[k]
+                    row = {
+                        "time_s": float(time_s[first]), "kind": "substation_blocked", "subject": substation.id, "track": "",
+                        "position_km": substation.km, "value": highest, "limit": float(no_load_v[k]),
+                    }  # fmt: skip
+                    self.rows.append(row)
+                row["value"], row["end_s"] = max(row["value"], highest), until
+                if end == len(blocked):
+                    self._blocked[k] = row
+
+    def add_rows(self, rows: Sequence[dict[str, Any]]) -> None:
+        """Add events that others have found."""
+        self.rows += rows
+
+    def add_violations(self, verdicts: Sequence[dict[str, Any]]) -> None:
+        """Add an event for each verdict that is not met, at the time of the worst value."""
+        for verdict in verdicts:
+            if not verdict["met"]:
+                time_s = parse_time(verdict["time"]) if verdict["time"] else self.start_s
+                self.rows.append(
+                    {
+                        "time_s": time_s, "end_s": time_s, "kind": "limit_violated", "subject": verdict["name"], "track": "",
+                        "position_km": np.nan, "value": verdict["value"], "limit": verdict["limit_value"],
+                        "place": verdict["place"], "unit": verdict["unit"], "limit_name": verdict["limit"],
+                    }
+                )  # fmt: skip
+
     def messages(self) -> list[str]:
-        """Return all events in words."""
-        return [message(row) for row in self.rows]
+        """Return in words which steps could not be served or did not converge."""
+        return [message(row) for row in self.rows if row["kind"] in KINDS.values()]
 
     def table(self) -> pa.Table:
-        """Return the rows of table ``events``."""
-        columns: dict[str, Any] = {name: [row[name] for row in self.rows] for name in ("time_s", "position_km", "value", "limit")}
-        columns["message"] = _coded(self.messages())
+        """Return the rows of table ``events``, by time."""
+        rows = sorted(self.rows, key=lambda row: (row["time_s"], row["kind"], row["subject"]))
+        columns: dict[str, Any] = {name: [row[name] for row in rows] for name in ("time_s", "position_km", "value", "limit")}
+        columns["message"] = _coded([message(row) for row in rows])
         for name in ("kind", "subject", "track"):
-            columns[name] = _coded([row[name] for row in self.rows])
+            columns[name] = _coded([row[name] for row in rows])
         return make_table("events", columns)
 
 
 def message(row: dict[str, Any]) -> str:
     """Return an event in words."""
-    when = f"{format_time(row['time_s'])} to {format_time(row['end_s'])}"
-    if row["kind"] == "not_servable":
-        return (
-            f"{when}: the demand cannot be served, first at {row['subject']} (track {row['track']},"
-            f" km {row['position_km']:g}); {100.0 * row['value']:.4f} % of all demand can be, and is computed"
-        )
-    return f"{when}: a node balances within {row['value']:.3g} A only; the best solution found is given"
+    return _TOLD[row["kind"]](row)
+
+
+def _spell(row: dict[str, Any]) -> str:
+    return f"{format_time(row['time_s'])} to {format_time(row['end_s'])}"
+
+
+def _not_servable(row: dict[str, Any]) -> str:
+    return (
+        f"{_spell(row)}: the demand cannot be served, first at {row['subject']} (track {row['track']},"
+        f" km {row['position_km']:g}); {100.0 * row['value']:.4f} % of all demand can be, and is computed"
+    )
+
+
+def _limit_violated(row: dict[str, Any]) -> str:
+    at = f" at {row['place']}" if row["place"] else ""
+    return f"{row['subject']}: {row['value']:.1f} {row['unit']}{at}, {row['limit_name']} is {row['limit']:g} {row['unit']}"
+
+
+_TOLD: dict[str, Callable[[dict[str, Any]], str]] = {
+    "not_servable": _not_servable,
+    "not_converged": lambda row: (
+        f"{_spell(row)}: a node balances within {row['value']:.3g} A only; the best solution found is given"
+    ),
+    "substation_blocked": lambda row: (
+        f"{_spell(row)}: rectifiers block, the busbar is at up to {row['value']:.1f} V, above {row['limit']:g} V without load"
+    ),
+    "low_voltage": lambda row: f"{_spell(row)}: down to {row['value']:.1f} V, below {row['limit']:g} V",
+    "high_voltage": lambda row: f"{_spell(row)}: up to {row['value']:.1f} V, above {row['limit']:g} V",
+    "current_limited": lambda row: (
+        f"{_spell(row)}: tractive effort limited by {row['reason'].replace('_', ' ')}, down to {row['value']:.1f} V"
+    ),
+    "regrouped": lambda row: f"{row['limit']:g} motors in series become {row['value']:g}",
+    "train_entered": lambda row: "comes onto the line",
+    "train_left": lambda row: "leaves the line",
+    "stop": lambda row: f"stops at {row['station']}",
+    "departure": lambda row: f"departs from {row['station']}",
+    "limit_violated": _limit_violated,
+}
 
 
 def _coded(words: list[str]) -> tuple[list[int], list[str]]:

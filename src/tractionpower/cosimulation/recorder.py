@@ -2,33 +2,45 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tractionpower.cosimulation.events import EventLog
+from tractionpower.cosimulation.tables import CompiledScenario
+from tractionpower.cosimulation.train_recorder import TrainRecorder
+from tractionpower.kernels.block_tables import Buffers, State, take_rows
 from tractionpower.kernels.network import FLAG_A
-from tractionpower.kernels.tables import Buffers, take_rows
 from tractionpower.model.base import format_time
-from tractionpower.model.limits import find_limit
+from tractionpower.model.limits import Limit, find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.columns import TABLES
 from tractionpower.results.extremes import Array, Extremes
-from tractionpower.results.key_figures import ledger_figures, load_figures, substation_figures, voltage_figure
+from tractionpower.results.key_figures import (
+    KeyFigure,
+    SubstationWindows,
+    ledger_figures,
+    load_figures,
+    substation_figures,
+    voltage_figure,
+    window_figures,
+)
 from tractionpower.results.ledgers import ElectricLedger
+from tractionpower.results.spells import TOLERANCE_V
 from tractionpower.results.tables import feeders_table, loads_table, make_table, substations_table
+from tractionpower.results.trains import calls_table, trains_table
 from tractionpower.supply.characteristics import no_load_voltage
-from tractionpower.supply.compile import SupplyTables
-
-VOLTAGE_TOLERANCE_V = 0.1
-"""A voltage limit counts as exceeded beyond this [V]."""
 
 
 class Recorder:
     """Takes the buffers of a run as they fill, writes rows and keeps what the key figures need."""
 
-    def __init__(self, scenario: Scenario, supply: SupplyTables, writer: Any) -> None:
+    def __init__(self, scenario: Scenario, compiled: CompiledScenario, state: State, writer: Any) -> None:
+        supply = compiled.supply
         self.scenario, self.supply, self.writer = scenario, supply, writer
+        self.trains = TrainRecorder(scenario, compiled, state)
         clock = scenario.clock
         self.step_s = clock.step_s
         self.every = 1 if scenario.output.every_s is None else round(scenario.output.every_s / clock.step_s)
@@ -42,8 +54,10 @@ class Recorder:
         self.substation_w = Extremes(len(supply.substations))
         self.load_v, self.load_w = Extremes(len(supply.loads)), Extremes(len(supply.loads))
         self.section_v = Extremes(len(supply.sections))
+        self.windows = SubstationWindows.of(len(supply.substations), clock.step_s)
         self.ledger = ElectricLedger()
-        self.events = EventLog(supply, clock.step_s)
+        self.events = EventLog(supply, clock.step_s, clock.start)
+        self.now_s = clock.start
         self.worst_a, self.iterations, self.steps = 0.0, 0, 0
 
     # -- rows ----------------------------------------------------------------------------------------------------
@@ -54,8 +68,13 @@ class Recorder:
         time_s: Array = self.scenario.clock.start + number.astype(float) * self.step_s
         taken = take_rows(buffers, slice(rows))
         self._note(time_s, taken)
+        placed = self.trains.add(taken.trains, self.figures_from_s - 1e-9)
         written = number % self.every == 0
         self._write(time_s[written], take_rows(taken, written))
+        if "trains" in self.wanted and len(taken.trains):
+            kept = np.repeat(written, taken.steps["trains"])
+            self._write_trains(taken.trains[kept], placed.track[kept], placed.km[kept])
+        self.now_s = float(time_s[-1]) + self.step_s
 
     def _note(self, time_s: Array, rows: Buffers) -> None:
         self.worst_a = max(self.worst_a, float(rows.steps["worst_a"].max()))
@@ -63,10 +82,13 @@ class Recorder:
         self.steps += len(rows.steps)
         self.ledger.add(rows.steps, self.step_s)
         self.events.add(time_s, rows.steps)
+        self.events.add_blocked(time_s, rows.source_v, self.no_load_v)
         counted = time_s >= self.figures_from_s - 1e-9
         t, rows = time_s[counted], take_rows(rows, counted)
         self.substation_a.add(t, rows.source_a)
-        self.substation_w.add(t, np.nan_to_num(rows.source_v) * rows.source_a)
+        power = np.nan_to_num(rows.source_v) * rows.source_a
+        self.substation_w.add(t, power)
+        self.windows.add(t, rows.source_a, power)
         self.load_v.add(t, rows.load_v)
         self.load_w.add(t, rows.load_v * rows.load_a)
         self.section_v.add(t, rows.section_v)
@@ -85,11 +107,21 @@ class Recorder:
         if "loads" in self.wanted and supply.loads:
             append("loads", loads_table(time_s, [load.id for load in supply.loads], rows.load_v, rows.load_a))
 
+    def _write_trains(self, rows: NDArray[np.void], track: NDArray[np.int64], km: Array) -> None:
+        trains = self.trains
+        table = trains_table(rows, (rows["train"], trains.names), (track, trains.places.tracks), km)
+        self.writer.append("trains", table)
+
     def close(self) -> None:
         """Write the tables that are known at the end only."""
+        calls = self.trains.note_calls()
+        if "calls" in self.wanted and calls:
+            self.writer.append("calls", calls_table(calls))
         if "profile" in self.wanted:
             self.writer.append("profile", make_table("profile", self._profile()))
         if "events" in self.wanted:
+            self.events.add_rows(self.trains.events.rows)
+            self.events.add_violations(self._verdicts())
             self.writer.append("events", self.events.table())
 
     def _profile(self) -> dict[str, Any]:
@@ -103,22 +135,26 @@ class Recorder:
         for number, place in enumerate(places):
             groups.setdefault(place, []).append(number)
         order = sorted(groups, key=lambda place: (place[1], place[0]))
-        tracks = sorted({track for _, track in order})
-        return {
+        tracks, found = self.trains.places.tracks, self.trains.profile()
+        fixed = {
             "km": [km for km, _ in order],
-            "track": ([tracks.index(track) for _, track in order], tracks),
+            "track": [tracks.index(track) for _, track in order],
             "lowest_voltage_v": [low[groups[place]].min() for place in order],
             "mean_voltage_v": [mean[groups[place]].mean() for place in order],
             "highest_voltage_v": [high[groups[place]].max() for place in order],
             "count": [self.section_v.count] * len(order),
         }
+        columns: dict[str, Any] = {name: np.concatenate((values, found[name])) for name, values in fixed.items()}
+        where = np.repeat([0, 1], [len(order), len(found["km"])])
+        return columns | {"track": (columns["track"].astype(int), tracks), "where": (where, ["cross_section", "pantograph"])}
 
     # -- what sums it up -----------------------------------------------------------------------------------------
 
     @property
     def flagged(self) -> bool:
         """Whether a step is flagged or a ledger does not close."""
-        return self.events.flagged_steps > 0 or not self.ledger.closes
+        closes = self.ledger.closes and all(ledger["closes"] for ledger in self.trains.ledgers().values())
+        return self.events.flagged_steps > 0 or not closes
 
     def summary(self) -> dict[str, Any]:
         """Return what ``run.json`` says of the solution."""
@@ -127,8 +163,10 @@ class Recorder:
             "residual_limit_a": FLAG_A,
             "mean_iterations": self.iterations / max(self.steps, 1),
             "flagged_steps": self.events.flagged_steps,
-            "ledgers": {"electric": self.ledger.as_dict()},
+            "ledgers": {"electric": self.ledger.as_dict(), **self.trains.ledgers()},
             "verdicts": self._verdicts(),
+            "overlaps": self.trains.overlaps.summary(),
+            "trains": self.trains.status(),
         }
 
     def _lowest(self) -> tuple[float, str, float]:
@@ -151,31 +189,66 @@ class Recorder:
                 self.supply.loads, getattr(self.load_v, which), getattr(self.load_v, which + "_s"), strict=True
             )
         ]
+        extreme = self.trains.lowest_v if which == "lowest" else self.trains.highest_v
+        found += [
+            (float(extreme.value[k]), self.trains.where(extreme, k), float(extreme.time_s[k]))
+            for k in np.flatnonzero(self.trains.seen).tolist()
+        ]
         best: tuple[float, str, float] = pick(found, key=lambda item: item[0])
         return best
 
     def _verdicts(self) -> list[dict[str, Any]]:
         if not self.section_v.count:
             return []
-        voltages, system = self.supply.voltages, self.scenario.supply.system
-        lowest, low_place, low_s = self._lowest()
-        highest, high_place, high_s = self._highest()
-        rows = [
-            ("lowest voltage", "u_min2", lowest, low_place, low_s, lowest >= voltages.u_min2 - VOLTAGE_TOLERANCE_V),
-            ("highest voltage", "u_max2", highest, high_place, high_s, highest <= voltages.u_max2 + VOLTAGE_TOLERANCE_V),
-        ]
-        verdicts = []
-        for title, name, value, place, when, met in rows:
-            limit = find_limit(self.scenario.limits, system, name)
-            assert limit is not None  # supply.checks has seen it
-            verdicts.append(
-                {
-                    "name": title, "value": value, "unit": "V", "place": place, "time": format_time(when),
-                    "limit": name, "limit_value": limit.value, "source": limit.source, "status": limit.status,
-                    "met": bool(met),
-                }
-            )  # fmt: skip
-        return verdicts
+        return list(self._judge())
+
+    def _judge(self) -> Iterator[dict[str, Any]]:
+        voltages = self.supply.voltages
+        low, high = self._lowest(), self._highest()
+        yield self._verdict("lowest voltage", "u_min2", "V", *low, low[0] >= voltages.u_min2 - TOLERANCE_V)
+        yield self._verdict("highest voltage", "u_max2", "V", *high, high[0] <= voltages.u_max2 + TOLERANCE_V)
+        trains = self.trains
+        spell = trains.spells["u_max1"]
+        if trains.seen.any() and find_limit(self.scenario.limits, self.scenario.supply.system, "t_max2"):
+            k = int(spell.longest_s.argmax())
+            limit = self._limit("t_max2").value
+            place = f"train {trains.names[k]}" if spell.longest_s[k] > 0.0 else ""
+            longest = float(spell.longest_s[k])
+            yield self._verdict(
+                "longest spell above U_max1", "t_max2", "s", longest, place, float(spell.longest_from_s[k]), longest <= limit
+            )
+        if find_limit(self.scenario.limits, self.scenario.supply.system, "u_useful"):
+            yield from self._judge_useful_voltage(self._limit("u_useful").value)
+
+    def _judge_useful_voltage(self, limit: float) -> Iterator[dict[str, Any]]:
+        trains = self.trains
+        zones = [f"zone {zone}" for zone in trains.places.zones]
+        names = [f"train {name}" for name in trains.names]
+        rows = {
+            "mean useful voltage of trains, current-weighted": (names, trains.useful.train_current_weighted_v),
+            "mean useful voltage of trains, time mean": (names, trains.useful.train_time_mean_v),
+            "mean useful voltage of zones, current-weighted": (zones, trains.useful.zone_current_weighted_v),
+            "mean useful voltage of zones, time mean": (zones, trains.useful.zone_time_mean_v),
+        }
+        for title, (places, volts) in rows.items():
+            if np.isfinite(volts).any():
+                k = int(np.nanargmin(volts))
+                lowest = float(volts[k])
+                yield self._verdict(title, "u_useful", "V", lowest, places[k], np.nan, lowest >= limit - TOLERANCE_V)
+
+    def _limit(self, name: str) -> Limit:
+        limit = find_limit(self.scenario.limits, self.scenario.supply.system, name)
+        assert limit is not None  # supply.checks has seen it, or the caller
+        return limit
+
+    def _verdict(
+        self, title: str, name: str, unit: str, value: float, place: str, when: float, met: bool
+    ) -> dict[str, Any]:
+        limit = self._limit(name)
+        return {
+            "name": title, "value": value, "unit": unit, "place": place, "time": format_time(when) if np.isfinite(when) else "",
+            "limit": name, "limit_value": limit.value, "source": limit.source, "status": limit.status, "met": bool(met),
+        }  # fmt: skip
 
     def key_figures(self) -> list[dict[str, Any]]:
         """Return the key figures of the run."""
@@ -185,11 +258,26 @@ class Recorder:
         figures = [
             voltage_figure("lowest", *self._lowest()),
             voltage_figure("highest", *self._highest()),
+            *self._spell_figures(),
             *substation_figures(substations, self.substation_a, self.substation_w, self.step_s),
+            *window_figures(substations, self.windows),
             *load_figures([load.id for load in self.supply.loads], self.load_w, self.step_s),
+            *self.trains.figures(self.now_s),
             *ledger_figures(self.ledger),
         ]
         return [figure.as_dict() for figure in figures]
+
+    def _spell_figures(self) -> Iterator[KeyFigure]:
+        """Yield the longest spells at a pantograph beyond the limits of the voltage (EN 50163)."""
+        if not self.trains.seen.any():
+            return
+        for name, words in (("u_max1", "above U_max1"), ("u_max2", "above U_max2"), ("u_min2", "below U_min2")):
+            spells = self.trains.spells[name]
+            k = int(spells.longest_s.argmax())
+            longest, when = float(spells.longest_s[k]), float(spells.longest_from_s[k])
+            place = f"train {self.trains.names[k]}" if longest > 0.0 else ""
+            figure, told = f"longest_spell_{words.replace(' ', '_').lower()}_s", format_time(when) if longest > 0.0 else ""
+            yield KeyFigure(figure, longest, place, told, f"longest time of a train {words} without a break, 0.1 V tolerance")
 
 
 def _given(value: float | None) -> float:

@@ -7,24 +7,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-import numpy as np
 import pyarrow as pa
 
-from tractionpower.cosimulation.check import check_coupling, check_scenario, step_count
+from tractionpower.cosimulation.check import check_scenario, step_count
 from tractionpower.cosimulation.recorder import Recorder
+from tractionpower.cosimulation.start import start_state
+from tractionpower.cosimulation.tables import compile_scenario
 from tractionpower.errors import Problem, raise_errors
 from tractionpower.kernels.block import advance
-from tractionpower.kernels.tables import LOAD, SOURCE, BlockTables, new_buffers, new_state
+from tractionpower.kernels.block_tables import Buffers, new_buffers
+from tractionpower.kernels.train_tables import TRAIN_ROW
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.versions import versions
-from tractionpower.supply.characteristics import no_load_voltage
-from tractionpower.supply.compile import SupplyTables, compile_network
 
 BLOCK_S = 0.25
 """Wall time that a block of steps aims at, so that progress and Ctrl-C live [s]."""
-
-ROUNDING_S = 5e-7
-"""A step starts at a time of day when it starts this much before it: start + k step is rounded, times have microseconds [s]."""
 
 FIRST_BLOCK = 16
 BUFFER_BYTES = 32_000_000
@@ -84,14 +81,14 @@ class Run:
 
     def __init__(self, scenario: Scenario, writer: Writer, study: str = "") -> None:
         started = time.perf_counter()
-        problems = [*check_scenario(scenario), *check_coupling(scenario)]
+        problems = check_scenario(scenario)
         raise_errors(problems)
         self.scenario, self.study = scenario, study
         self.warnings = tuple(problems)
-        supply = compile_network(scenario.supply, scenario.line, scenario.limits)
-        self.tables = compile_block(scenario, supply)
+        self.compiled = compile_scenario(scenario)
         self.steps = step_count(scenario.clock)
-        self.recorder = Recorder(scenario, supply, writer)
+        self.state = start_state(self.compiled)
+        self.recorder = Recorder(scenario, self.compiled, self.state, writer)
         self.done = 0
         self.compile_seconds = time.perf_counter() - started
         self.wall_seconds = 0.0
@@ -101,13 +98,11 @@ class Run:
 
         After an interruption `outcome` still tells what was done; rows computed so far are with the writer.
         """
-        row_bytes = 8 * (10 + sum(a.shape[-1] for a in new_buffers(self.tables, 1)[1:]))
-        buffers = new_buffers(self.tables, max(FIRST_BLOCK, min(self.steps, BUFFER_BYTES // row_bytes)))
-        state = new_state(self.tables)
+        tables, buffers = self.compiled.block, self._new_buffers()
         started, block = time.perf_counter(), FIRST_BLOCK
         while self.done < self.steps:
             block_started = time.perf_counter()
-            rows, _ = advance(self.tables, state, buffers, min(self.done + block, self.steps))
+            rows, _ = advance(tables, self.state, buffers, min(self.done + block, self.steps))
             pace = (time.perf_counter() - block_started) / max(rows, 1)
             self.recorder.add(self.done, rows, buffers)
             self.done += rows
@@ -118,6 +113,12 @@ class Run:
         self.recorder.close()
         return self.outcome()
 
+    def _new_buffers(self) -> Buffers:
+        """Return buffers of some `BUFFER_BYTES` for the steps, and as many for the trains."""
+        sample = new_buffers(self.compiled.block, 1)
+        steps = max(FIRST_BLOCK, min(self.steps, BUFFER_BYTES // sum(array.nbytes for array in sample[:-1])))
+        return new_buffers(self.compiled.block, steps, BUFFER_BYTES // TRAIN_ROW.itemsize)
+
     def outcome(self) -> Outcome:
         """Return what is known of the run up to now."""
         run = {
@@ -127,6 +128,10 @@ class Run:
             "name": self.scenario.name,
             "input_hash": self.scenario.input_hash,
             "seed": self.scenario.seed,
+            "step_s": self.scenario.clock.step_s,
+            "start_s": self.scenario.clock.start,
+            "end_s": self.scenario.clock.end,
+            "coupling": self.scenario.coupling,
             "versions": versions(),
             "wall_seconds": self.wall_seconds,
             "compile_seconds": self.compile_seconds,
@@ -139,17 +144,3 @@ class Run:
         if self.done < self.steps:
             return "interrupted"
         return "flagged" if self.recorder.flagged else "complete"
-
-
-def compile_block(scenario: Scenario, supply: SupplyTables) -> BlockTables:
-    """Return the tables that a block of steps reads."""
-    sources = np.zeros(len(supply.substations), SOURCE)
-    sources["port"] = supply.source_port
-    sources["positive"], sources["negative"] = supply.busbar.T
-    sources["no_load_v"] = [no_load_voltage(substation) for substation in supply.substations]
-    loads = np.zeros(len(supply.loads), LOAD)
-    loads["port"] = supply.load_port
-    loads["from_s"] = [-np.inf if load.from_ is None else load.from_ - ROUNDING_S for load in supply.loads]
-    loads["to_s"] = [np.inf if load.to is None else load.to - ROUNDING_S for load in supply.loads]
-    clock = np.array([scenario.clock.start, scenario.clock.step_s])
-    return BlockTables(supply.network, supply.edges, sources, loads, supply.feeder_end, supply.section_table, clock)

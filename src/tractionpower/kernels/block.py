@@ -1,4 +1,4 @@
-"""The clock: a block of steps, each of them devices, network, record.
+"""The clock: a block of steps, each of them devices, network, record, motion.
 
 A block can end after any step and be resumed; the result does not depend on where it ends.
 """
@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from tractionpower.kernels.block_tables import BUFFER_FULL, DONE
+from tractionpower.kernels.fleet import answer_trains, ask_line, enter_trains
 from tractionpower.kernels.flows import conductor_flows, skeleton_balance
 from tractionpower.kernels.jit import njit
 from tractionpower.kernels.network import CONVERGED, FLAG_A, NOT_CONVERGED, solve
 from tractionpower.kernels.ports import port_current
 from tractionpower.kernels.spans import place_ports
-from tractionpower.kernels.tables import BUFFER_FULL, DONE
 
 
 @njit
@@ -37,17 +38,21 @@ def advance(tables, state, buffers, until_step):
         `DONE` or `BUFFER_FULL`.
     """
     progress = state.progress[0]
-    row = 0
+    row = used = 0
     _restore_loads(tables, state)
     while progress.step < until_step:
-        if row == buffers.steps.shape[0]:
-            return row, BUFFER_FULL
         t = tables.clock[0] + progress.step * tables.clock[1]
+        enter_trains(tables, state, t)
+        if row == buffers.steps.shape[0] or used + progress.active > buffers.trains.shape[0]:
+            return row, BUFFER_FULL
         changed = _switch_loads(tables, state, t)
-        if changed or not progress.solved:
+        ask_line(tables, state, t)
+        if changed or progress.stale or progress.active > 0 or not progress.solved:
             _solve_step(tables, state, progress.solved)
-            progress.solved = True
+            progress.solved, progress.stale = True, False
+        state.result[0].trains = progress.active
         _record(tables, state, buffers, row)
+        used = answer_trains(tables, state, t, buffers.trains, used)
         progress.step += 1
         row += 1
     return row, DONE
@@ -92,6 +97,7 @@ def _solve_step(tables, state, warm):
     result.source_w = 0.0
     result.regulation_w = 0.0
     result.load_w = 0.0
+    result.train_w = 0.0
     result.gross_w = 0.0
     for k in range(tables.sources.shape[0]):
         source = tables.sources[k]
@@ -105,6 +111,11 @@ def _solve_step(tables, state, warm):
         port = tables.loads[k].port
         p = work.ports[port].u * port_current(network.segments, network.ports[port], work.ports[port].u)
         result.load_w += p
+        result.gross_w += abs(p)
+    for n in range(state.progress[0].active):
+        port = tables.fleet[state.active[n]].port
+        p = work.ports[port].u * port_current(network.segments, network.ports[port], work.ports[port].u)
+        result.train_w += p
         result.gross_w += abs(p)
 
 

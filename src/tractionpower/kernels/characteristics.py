@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from tractionpower.kernels.jit import njit
-from tractionpower.kernels.pantograph import auxiliary_current, permitted_effort
+from tractionpower.kernels.pantograph import auxiliary_current
 from tractionpower.kernels.series_motors import choose_notch
+from tractionpower.kernels.traction import permitted_effort
 from tractionpower.kernels.train_step import free_current
 from tractionpower.kernels.train_tables import SERIES_MOTORS
 

@@ -56,7 +56,7 @@ def solve_linear(network, work):
     for k in range(node_v.shape[0]):
         node_v[k] = 0.0
     between = 0
-    while between < order.shape[0] and ports[order[between]].span < 0:
+    while between < work.in_service[0] and ports[order[between]].span < 0:
         port, w = ports[order[between]], work.ports[order[between]]
         value[port.positive] += w.g
         value[port.negative] += w.g
@@ -88,10 +88,10 @@ def solve_warm(network, work):
     iterations, worst
         Number of linear solutions, 0 when refused; largest imbalance of a port [A].
     """
-    ports = work.ports
-    for p in range(ports.shape[0]):
-        w = ports[p]
-        _bound(network.segments, network.ports[p], w)
+    ports, order, count = work.ports, work.order, work.in_service[0]
+    for k in range(count):
+        w = ports[order[k]]
+        _bound(network.segments, network.ports[order[k]], w)
         change = w.u - w.before_v
         w.before_v = w.u
         if abs(change) < SMOOTH_V:  # trains move on steadily: the line through the last two solutions saves an iteration
@@ -105,8 +105,8 @@ def solve_warm(network, work):
             before = worst
         if not solve_linear(network, work):
             return 0, worst
-        for p in range(ports.shape[0]):
-            w = ports[p]
+        for k in range(count):
+            w = ports[order[k]]
             if not w.lowest_v <= w.u_next < w.highest_v:
                 return 0, worst
             w.u = w.u_next
@@ -134,11 +134,10 @@ def solve_cold(network, work):
     iterations, worst
         Number of descent steps; largest imbalance of a port [A].
     """
-    ports, segments = network.ports, network.segments
-    for p in range(ports.shape[0]):
-        w = work.ports[p]
+    for k in range(work.in_service[0]):
+        w = work.ports[work.order[k]]
         w.before_v = np.inf  # nothing to draw a line through
-        w.u = ports[p].start_v
+        w.u = network.ports[work.order[k]].start_v
         w.i = 0.0
     best, stalled, worst, way = np.inf, 0, np.inf, 1.0
     for iteration in range(COLD_ITERATIONS):
@@ -156,7 +155,7 @@ def solve_cold(network, work):
                 return COLD_ITERATIONS, np.inf
             share = 0.5 * share if share > 0.01 else 0.0
             linearise(network, work, share, ALL, near)
-        way = _descend(segments, ports, work.ports)
+        way = _descend(network, work)
     _recover_potentials(network, work)
     return COLD_ITERATIONS, worst
 
@@ -167,17 +166,17 @@ def _recover_potentials(network, work):
 
     Voltages and currents of the ports are those of the linear network, whatever conductance stands for a port.
     """
-    for p in range(network.ports.shape[0]):
-        w = work.ports[p]
+    for k in range(work.in_service[0]):
+        port, w = network.ports[work.order[k]], work.ports[work.order[k]]
         w.g = 1.0
         w.j = w.i - w.u
-        if network.ports[p].span >= 0:
-            work.spans[network.ports[p].span].stale = True
+        if port.span >= 0:
+            work.spans[port.span].stale = True
     solve_linear(network, work)
 
 
 @njit
-def _descend(segments, ports, work):
+def _descend(network, work):
     """Go along the direction of the last linear solution to where the potential stops falling steeply.
 
     Returns
@@ -186,18 +185,18 @@ def _descend(segments, ports, work):
         How much of the way was gone, 1 for all of it.
     """
     longest = 0.0
-    for p in range(ports.shape[0]):
-        w = work[p]
+    for k in range(work.in_service[0]):
+        w = work.ports[work.order[k]]
         w.i_next = w.g * w.u_next + w.j
         longest = max(longest, abs(w.u_next - w.u))
     high = 1.0 if longest <= STEP_V else STEP_V / longest
-    start = _fall(segments, ports, work, 0.0)
-    t, fall = high, _fall(segments, ports, work, high)
+    start = _fall(network, work, 0.0)
+    t, fall = high, _fall(network, work, high)
     if start < 0.0 and fall > -0.5 * start:  # start is zero where nothing but rounding is left
         low, low_fall, high_fall = 0.0, start, fall
         for _ in range(60):
             t = low + (high - low) * low_fall / (low_fall - high_fall)
-            fall = _fall(segments, ports, work, t)
+            fall = _fall(network, work, t)
             if abs(fall) <= -0.5 * start:
                 break
             if fall > 0.0:  # Illinois: halve the weight of the end that stays
@@ -205,52 +204,55 @@ def _descend(segments, ports, work):
             else:
                 low, low_fall, high_fall = t, fall, 0.5 * high_fall
     if start < -HUMP_W:
-        while t > SHORTEST and _rise(segments, ports, work, t) > 0.0:  # the root lies beyond a hump
+        while t > SHORTEST and _rise(network, work, t) > 0.0:  # the root lies beyond a hump
             t *= 0.5
-    for p in range(ports.shape[0]):
-        w = work[p]
+    for k in range(work.in_service[0]):
+        w = work.ports[work.order[k]]
         w.u += t * (w.u_next - w.u)
         w.i += t * (w.i_next - w.i)
     return t
 
 
 @njit
-def _rise(segments, ports, work, t):
+def _rise(network, work, t):
     """Return by how much the potential is higher `t` of the way along the direction [W]."""
     rise = 0.0
-    for p in range(ports.shape[0]):
-        w = work[p]
+    for k in range(work.in_service[0]):
+        port, w = network.ports[work.order[k]], work.ports[work.order[k]]
         du = t * (w.u_next - w.u)
-        rise += port_integral(segments, ports[p], w.u, w.u + du) - du * (w.i + 0.5 * t * (w.i_next - w.i))
+        rise += port_integral(network.segments, port, w.u, w.u + du) - du * (w.i + 0.5 * t * (w.i_next - w.i))
     return rise
 
 
 @njit
-def _fall(segments, ports, work, t):
+def _fall(network, work, t):
     """Return the derivative of the potential along the direction, `t` of the way [W]."""
     total = 0.0
-    for p in range(ports.shape[0]):
-        w = work[p]
+    for k in range(work.in_service[0]):
+        port, w = network.ports[work.order[k]], work.ports[work.order[k]]
         du = w.u_next - w.u
-        total += du * (port_current(segments, ports[p], w.u + t * du) - w.i - t * (w.i_next - w.i))
+        total += du * (port_current(network.segments, port, w.u + t * du) - w.i - t * (w.i_next - w.i))
     return total
 
 
 @njit
-def find_unserved(ports, work):
+def find_unserved(network, work):
     """Return the port whose demand cannot be served in the present solution, or -1."""
-    for p in range(ports.shape[0]):
-        port, u = ports[p], work[p].u
-        if port.scale > 0.0 and port.floor_v > 0.0 and not port.floor_v <= u <= port.ceiling_v:
-            return p
-    return -1
+    found = -1
+    for k in range(work.in_service[0]):
+        p = work.order[k]
+        port, u = network.ports[p], work.ports[p].u
+        if port.scale > 0.0 and port.floor_v > 0.0 and not port.floor_v <= u <= port.ceiling_v and (found < 0 or p < found):
+            found = p
+    return found
 
 
 @njit
-def _cut_demand(ports, work, factor):
-    for p in range(ports.shape[0]):
-        if ports[p].demand:
-            ports[p].scale = factor * work[p].full_scale
+def _cut_demand(network, work, factor):
+    for k in range(work.in_service[0]):
+        port = network.ports[work.order[k]]
+        if port.demand:
+            port.scale = factor * work.ports[work.order[k]].full_scale
 
 
 @njit
@@ -281,27 +283,26 @@ def solve(network, work, warm):
     port : int
         The port that cannot be served, else -1.
     """
-    ports = network.ports
     iterations, worst = 0, np.inf
     if warm:
         iterations, worst = solve_warm(network, work)
     if iterations == 0:
         iterations, worst = solve_cold(network, work)
-    unserved = find_unserved(ports, work.ports)
+    unserved = find_unserved(network, work)
     if unserved < 0:
         return (CONVERGED if worst <= FLAG_A else NOT_CONVERGED), iterations, worst, 1.0, -1
-    for p in range(ports.shape[0]):
-        work.ports[p].full_scale = ports[p].scale
+    for k in range(work.in_service[0]):
+        work.ports[work.order[k]].full_scale = network.ports[work.order[k]].scale
     low, high = 0.0, 1.0
     while high - low > 1e-7:
         middle = 0.5 * (low + high)
-        _cut_demand(ports, work.ports, middle)
+        _cut_demand(network, work, middle)
         more, worst = solve_cold(network, work)
         iterations += more
-        if worst <= 2.0 * TOLERANCE_A and find_unserved(ports, work.ports) < 0:  # just beyond the fold it is small, too
+        if worst <= 2.0 * TOLERANCE_A and find_unserved(network, work) < 0:  # just beyond the fold it is small, too
             low = middle
         else:
             high = middle
-    _cut_demand(ports, work.ports, low)
+    _cut_demand(network, work, low)
     more, worst = solve_cold(network, work)
     return NOT_SERVABLE, iterations + more, worst, low, unserved

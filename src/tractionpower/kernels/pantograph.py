@@ -1,27 +1,13 @@
-"""What a train takes from the line and gives back at a voltage: auxiliaries, current limits, braking."""
+"""The electric side of a train beside its traction: auxiliaries, current limits, what the line takes back of braking."""
 
 from __future__ import annotations
 
-from tractionpower.kernels.effort import efficiency_at, greatest_effort, look_up
 from tractionpower.kernels.jit import inlined
-from tractionpower.kernels.series_motors import at_full, at_part
 from tractionpower.kernels.train_tables import (
-    BY_DRIVE,
     BY_LINE_CURRENT,
-    BY_NOTHING,
     BY_TRAIN_CURRENT,
     BY_VOLTAGE,
-    INVERTER,
-    SERIES_MOTORS,
-    TABLE,
 )
-
-_FULL = 1e-9
-"""A wish this near to the greatest power is that."""
-
-_HALVINGS = 50
-_ROUNDS = 4
-_CRAWL_MPS = 1e-3
 
 
 @inlined
@@ -54,208 +40,10 @@ def current_limit(train, u, line_a):
 
 
 @inlined
-def traction(tables, train, mover, need_w, lines, midpoint):
-    """Return what traction takes where it wishes the power `need_w`.
-
-    Parameters
-    ----------
-    need_w : float
-        Wished mean power of the step [W]: of an inverter drive from the line, of others at the wheel.
-    lines : tuple
-        Voltage [V], and largest train current that the line allows [A].
-    midpoint : tuple
-        Speed at the start of the step [m/s], half of its time over inertia [s/kg], resistance [N], mean speed [m/s].
-
-    Returns
-    -------
-    power_w : float
-        What it gets, of the kind of `need_w` [W].
-    current_a, resistor_w : float
-        Current from the line [A] and heat in starting resistors [W].
-    by : int
-        What limits it, if `power_w` is less than `need_w`.
-    """
-    u, line_a = lines
-    if not u > 0.0 or need_w <= 0.0:
-        return 0.0, 0.0, 0.0, BY_VOLTAGE
-    limit, by = current_limit(train, u, line_a)
-    free = max(limit - auxiliary_current(train, u), 0.0)
-    if train.drive == INVERTER:
-        power = u * free
-        if train.powers > 0:
-            table, _ = look_up(tables.points, train.first_power, train.powers, u)
-            table /= _efficiency_of(tables, train, mover, table, midpoint)
-            if table < power:
-                power, by = table, BY_VOLTAGE
-        power = min(power, need_w)
-        return power, power / u, 0.0, by
-    power, current, resistor = need_w, 0.0, 0.0
-    if train.drive == SERIES_MOTORS:
-        notch = tables.notches[train.first_notch + mover.notch]
-        current, most, resistor = at_full(tables, notch, u, midpoint)
-        if need_w < most * (1.0 - _FULL):
-            current, resistor = at_part(tables, train, mover, u, need_w, midpoint)
-        else:
-            power = min(most, need_w)
-            if current <= free:
-                by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
-    elif train.drive == TABLE:
-        current, most = _table_at(tables, train, max(u, train.lowest_v), midpoint)
-        if u < train.lowest_v:  # as auxiliaries do: no power at any voltage
-            current, most = current * u / train.lowest_v, most * (u / train.lowest_v) ** 2
-        if need_w < most * (1.0 - _FULL):
-            current *= need_w / most
-        else:
-            power = min(most, need_w)
-            if current <= free:
-                by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
-    if current > free:  # the drive takes turns with off
-        share = free / current
-        return power * share, free, resistor * share, by
-    return power, current, resistor, by
-
-
-@inlined
-def permitted_effort(tables, train, mover, v, lines):
-    """Return the effort that voltage and limits permit at the speed `v` [m/s] itself.
-
-    Returns
-    -------
-    effort_n, current_a, resistor_w : float
-        Effort [N], current of traction [A], heat in starting resistors [W].
-    by : int
-        What limits it.
-    """
-    greatest, _, by = greatest_effort(tables, train, mover, v)
-    need_w = greatest * v
-    if train.drive == INVERTER:
-        need_w /= efficiency_at(tables, train, v, 1.0)
-    power, current, resistor_w, cut = traction(tables, train, mover, need_w, lines, (v, 0.0, 0.0, v))
-    if need_w <= 0.0:
-        return 0.0, 0.0, 0.0, by
-    if power >= need_w * (1.0 - _FULL):
-        return greatest, current, resistor_w, BY_NOTHING if greatest >= train.start_n else by
-    if train.map_loads == 0:
-        return greatest * power / need_w, current, resistor_w, cut
-    low, high = 0.0, 1.0  # the efficiency depends on the share of the effort, which is sought
-    for _ in range(_HALVINGS):
-        share = 0.5 * (low + high)
-        if share * greatest * v > power * efficiency_at(tables, train, v, share):
-            high = share
-        else:
-            low = share
-    return low * greatest, current, resistor_w, cut
-
-
-@inlined
-def _efficiency_of(tables, train, mover, wheel_w, midpoint):
-    """Return the efficiency of an inverter drive that gives the power `wheel_w` [W], at the mean speed it leads to."""
-    v, half, resistance, mean = midpoint
-    if train.map_loads == 0 or mean <= 0.0:
-        return train.efficiency
-    for _ in range(_ROUNDS):
-        mean = max(v + half * (min(wheel_w / mean, train.start_n) - resistance), _CRAWL_MPS)
-    greatest, _, _ = greatest_effort(tables, train, mover, mean)
-    return efficiency_at(tables, train, mean, min(wheel_w / (greatest * mean), 1.0))
-
-
-@inlined
-def _table_at(tables, train, u, midpoint):
-    """Return current [A] and power at the wheel [W] of a table drive at full effort.
-
-    Between the voltages of the table current and losses are linear in the voltage; beyond its ends effort and power are
-    those of the nearest.
-    """
-    curves, first = tables.curves, train.first_curve
-    last = first + train.curves - 1
-    n = first
-    while n < last and curves[n + 1].voltage_v <= u:
-        n += 1
-    low_i, low_w = _curve_at(tables, curves[n], midpoint)
-    low_u = curves[n].voltage_v
-    if n == last or u <= low_u:
-        return low_i * low_u / u, low_w
-    high_u = curves[n + 1].voltage_v
-    high_i, high_w = _curve_at(tables, curves[n + 1], midpoint)
-    x = (u - low_u) / (high_u - low_u)
-    current = low_i + x * (high_i - low_i)
-    low_loss, high_loss = low_u * low_i - low_w, high_u * high_i - high_w
-    return current, u * current - (low_loss + x * (high_loss - low_loss))
-
-
-@inlined
-def _curve_at(tables, curve, midpoint):
-    v, half, resistance, _ = midpoint
-    effort, _ = look_up(tables.points, curve.first_effort, curve.efforts, v)
-    mean = max(v + half * (effort - resistance), 0.0)
-    effort, _ = look_up(tables.points, curve.first_effort, curve.efforts, mean)
-    mean = max(v + half * (effort - resistance), 0.0)
-    loss, _ = look_up(tables.points, curve.first_loss, curve.losses, mean)
-    return (effort * mean + loss) / curve.voltage_v, effort * mean
-
-
-@inlined
 def feed_back_share(train, u):
-    """Return which share of what is left of the braking power the line gets at the voltage `u`: 1, folding back to 0.
-
-    Below U_min2 the current falls with the voltage, as that of auxiliaries does.
-    """
-    if not train.regenerates or u >= train.fold_to_v or u <= 0.0:
+    """Return which share of what is left of the braking power the line gets at the voltage `u`: 1, folding back to 0."""
+    if not train.regenerates or u >= train.fold_to_v:
         return 0.0
-    if u < train.lowest_v:
-        return (u / train.lowest_v) ** 2
     if u <= train.fold_from_v:
         return 1.0
     return (train.fold_to_v - u) / (train.fold_to_v - train.fold_from_v)
-
-
-@inlined
-def write_row(train, tally, row, spent, lines, taken):
-    """Fill what the electric side of a step says: brakes, auxiliaries, power, losses.
-
-    Fold-back acts on what is left of the braking power after the train's own needs. What the line refuses goes to the
-    braking resistors, and the rest to the friction brakes, which does not change the motion.
-
-    Parameters
-    ----------
-    spent : float
-        Length of the step [s].
-    lines : tuple
-        Voltage [V], and largest train current that the line allows [A].
-    taken : tuple
-        Power [W] of traction from the line, and heat in starting resistors [W].
-    """
-    traction_w, resistor_w = taken
-    u, line_a = lines
-    auxiliary_w = u * min(auxiliary_current(train, u), line_a) * tally.on_line_s / spent
-    gained = train.brake_efficiency * tally.electric_j / spent
-    returned = refused = heated = 0.0
-    own = auxiliary_w + traction_w
-    if train.regenerates:
-        left = max(gained - own, 0.0)
-        returned = feed_back_share(train, u) * left
-        refused = left - returned
-        heated = min(refused, train.rheostat_w)
-        own = max(own - gained, 0.0)
-        dropped = refused - heated
-    else:
-        heated = min(gained, train.rheostat_w)
-        dropped = gained - heated
-    share = 1.0 - dropped / gained if gained > 0.0 else 0.0
-    row.voltage_v = u
-    row.power_w = own - returned
-    row.current_a = row.power_w / u if u > 0.0 else 0.0
-    row.auxiliary_w = auxiliary_w
-    row.starting_resistor_w = resistor_w
-    row.braking_resistor_w = heated
-    row.refused_w = refused
-    row.returned_w = returned
-    row.recovered_w = gained - refused if train.regenerates else 0.0
-    row.brake_w = tally.brake_j / spent
-    row.wheel_w = tally.traction_j / spent
-    row.drive_loss_w = traction_w - resistor_w - row.wheel_w
-    row.traction_n = tally.traction_ns / spent
-    row.electric_brake_n = share * tally.electric_ns / spent
-    row.friction_brake_n = tally.brake_ns / spent - row.electric_brake_n
-    row.resistance_n = tally.resistance_ns / spent
-    row.wished_n = tally.wished_ns / spent

@@ -90,7 +90,8 @@ def linearise(network, work, share, keep_a, near_v):
     """
     ports, segments, port_work = network.ports, network.segments, work.ports
     worst = 0.0
-    for p in range(ports.shape[0]):
+    for k in range(work.in_service[0]):
+        p = work.order[k]
         port, w = ports[p], port_work[p]
         s = find_segment(segments, port, w.u)
         segment = segments[s]

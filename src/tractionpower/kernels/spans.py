@@ -16,14 +16,14 @@ from tractionpower.kernels.tables import FIRST, NEXT, SHARED, SHARED_NODE_M
 def place_ports(network, work):
     """Sort the ports of the spans by place and compute all that depends on their places only."""
     ports, conductor_work = network.ports, work.conductors
-    _sort_ports(ports, work.order)
+    _sort_ports(ports, work.order, work.in_service[0])
     for s in range(network.spans.shape[0]):
         work.spans[s].ports = 0
         work.spans[s].stale = True
     for c in range(conductor_work.shape[0]):
         conductor_work[c].last_m = 0.0
         conductor_work[c].nodes = 0
-    for k in range(work.order.shape[0]):
+    for k in range(work.in_service[0]):
         p = work.order[k]
         port = ports[p]
         if port.span < 0:
@@ -40,10 +40,10 @@ def place_ports(network, work):
 
 
 @njit
-def _sort_ports(ports, order):
+def _sort_ports(ports, order, count):
     # Insertion: from one step to the next the order hardly changes.
     last_span, last_x = -1, 0.0
-    for k in range(order.shape[0]):
+    for k in range(count):
         p = order[k]
         span, x = ports[p].span, ports[p].x_m
         if span > last_span or (span == last_span and x >= last_x):

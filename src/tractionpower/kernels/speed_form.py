@@ -13,9 +13,10 @@ import numpy as np
 from tractionpower.kernels.effort import look_up
 from tractionpower.kernels.jit import njit
 from tractionpower.kernels.journey import ARRIVED, OUT_OF_ROWS, STUCK, STUCK_S
-from tractionpower.kernels.pantograph import auxiliary_current, permitted_effort
+from tractionpower.kernels.pantograph import auxiliary_current
 from tractionpower.kernels.series_motors import choose_notch
-from tractionpower.kernels.train_step import free_current, settle, wish
+from tractionpower.kernels.traction import permitted_effort
+from tractionpower.kernels.train_step import free_current, settle_alone, wish
 from tractionpower.kernels.train_tables import (
     ACCELERATING,
     COASTING,
@@ -53,7 +54,7 @@ def run_over_speed(tables, state, k, clock, voltage, rows):
             spent = _speed_step(tables, state, k, (now, h * SPEED_PER_TIME), u, rows[n])
         if spent == 0.0:
             wish(tables, state, k, now, h)
-            settle(tables, state, k, (now, h), u, rows[n])
+            settle_alone(tables, state, k, (now, h), u, rows[n])
             spent = h
         now += spent
         if mover.status >= STAYING:
@@ -111,7 +112,10 @@ def _speed_step(tables, state, k, clock, u, row):
     lines = _lines(tables, train, mover, u)
     _write(train, row, (now, time, distance), (v, v + share * change), lines, work)
     _, _, _, row.limited_by = permitted_effort(tables, train, mover, max(v, _CRAWL_MPS), lines)
-    row.s_m = mover.s_m
+    row.train, row.s_m, row.moved_m, row.on_line_s = k, mover.s_m, distance, time
+    row.grouping = 0
+    if train.drive == SERIES_MOTORS and row.wheel_w > 0.0:
+        row.grouping = tables.notches[train.first_notch + mover.notch].series
     note_calls(tables, train, mover, (state.arrived_s, state.left_s), (now, distance, share * change / time))
     mover.s_m += distance
     mover.v_mps = v + share * change

@@ -168,7 +168,8 @@ class Work(NamedTuple):
     sides: NDArray[np.void]  # shape (ports, 2)
     conductors: NDArray[np.void]
     spans: NDArray[np.void]
-    order: NDArray[np.int64]  # ports by span and place, those between skeleton nodes first
+    order: NDArray[np.int64]  # ports by span and place, those between skeleton nodes first; those not in service last
+    in_service: NDArray[np.int64]  # how many of `order` are in service, shape (1,)
     step_base: NDArray[np.float64]  # skeleton values with the spans that carry no port
     value: NDArray[np.float64]
     node_v: NDArray[np.float64]  # potentials of the skeleton nodes, ground last
@@ -193,6 +194,7 @@ def new_work(network: Network) -> Work:
         conductors=np.zeros(len(network.conductors), CONDUCTOR_WORK),
         spans=np.zeros(len(network.spans), SPAN_WORK),
         order=np.argsort(network.ports["span"], kind="stable").astype(np.int64),
+        in_service=np.array([ports], np.int64),
         step_base=network.base.copy(),
         value=network.base.copy(),
         node_v=np.zeros(nodes + 1),
@@ -204,112 +206,3 @@ def new_work(network: Network) -> Work:
     )
     work.ports["u"] = network.ports["start_v"]
     return work
-
-
-SOURCE = np.dtype([("port", "i8"), ("positive", "i8"), ("negative", "i8"), ("no_load_v", "f8")])
-"""A substation; its port is -1 when its rectifiers are out, its nodes are -1 when its busbars are not in the network."""
-
-LOAD = np.dtype([("port", "i8"), ("from_s", "f8"), ("to_s", "f8")])
-"""A fixed load and the times of day between which it is on."""
-
-SECTION = np.dtype([("contact", "i8"), ("rail", "i8"), ("port", "i8")])
-"""A place whose voltage is recorded: two skeleton nodes, or a port in a span (else -1)."""
-
-DONE, BUFFER_FULL = 0, 1
-"""Why `advance` came back."""
-
-
-class BlockTables(NamedTuple):
-    """All that a block of steps reads.
-
-    Attributes
-    ----------
-    network
-        The compiled network; `ports.scale` is written by the devices.
-    edges, sources, loads
-        Record arrays of `EDGE`, `SOURCE`, `LOAD`.
-    feeder_end
-        Conductor and end (0 left, 1 right) that each feeder supplies, shape (feeders, 2).
-    sections
-        Places whose voltage is recorded, record array of `SECTION`.
-    clock
-        Start [s after midnight], step [s], shape (2,).
-    """
-
-    network: Network
-    edges: NDArray[np.void]
-    sources: NDArray[np.void]
-    loads: NDArray[np.void]
-    feeder_end: NDArray[np.int64]
-    sections: NDArray[np.void]
-    clock: NDArray[np.float64]
-
-
-PROGRESS = np.dtype([("step", "i8"), ("solved", "?")])
-
-STEP_RESULT = np.dtype(
-    [
-        ("status", "i8"),
-        ("iterations", "i8"),
-        ("worst_a", "f8"),  # largest imbalance of a node
-        ("factor", "f8"),  # by which all demand was cut
-        ("port", "i8"),  # that cannot be served, or -1
-        ("source_w", "f8"),  # sum of E I
-        ("regulation_w", "f8"),  # sum of (E - U) I
-        ("load_w", "f8"),
-        ("conductor_w", "f8"),  # heat in contact lines, rails, feeders
-        ("gross_w", "f8"),  # sum of the absolute values of what is exchanged
-    ]
-)
-"""What is known of the solution of a step as a whole."""
-
-
-class State(NamedTuple):
-    """All that one step leaves for the next; made by `new_state`, copied by `copy_state`."""
-
-    work: Work
-    progress: NDArray[np.void]  # one record of PROGRESS
-    load_on: NDArray[np.bool_]
-    balance: NDArray[np.float64]
-    result: NDArray[np.void]  # one record of STEP_RESULT
-
-
-class Buffers(NamedTuple):
-    """Room for the rows of a number of steps; row k belongs to the k-th step since the last call."""
-
-    steps: NDArray[np.void]  # STEP_RESULT
-    source_v: NDArray[np.float64]  # busbar voltages, NaN where there is no busbar; shape (rows, sources)
-    source_a: NDArray[np.float64]
-    load_v: NDArray[np.float64]
-    load_a: NDArray[np.float64]
-    feeder_a: NDArray[np.float64]
-    section_v: NDArray[np.float64]
-
-
-def new_state(tables: BlockTables) -> State:
-    """Return the state before the first step."""
-    return State(
-        work=new_work(tables.network),
-        progress=np.zeros(1, PROGRESS),
-        load_on=np.zeros(len(tables.loads), np.bool_),
-        balance=np.zeros(tables.network.nodes + 1),
-        result=np.zeros(1, STEP_RESULT),
-    )
-
-
-def copy_state(state: State) -> State:
-    """Return an independent copy, from which the run can be resumed."""
-    work = Work(*(array.copy() for array in state.work))
-    return State(work, *(array.copy() for array in state[1:]))
-
-
-def new_buffers(tables: BlockTables, rows: int) -> Buffers:
-    """Return buffers for `rows` steps."""
-    sources, loads = len(tables.sources), len(tables.loads)
-    widths = (sources, sources, loads, loads, len(tables.feeder_end), len(tables.sections))
-    return Buffers(np.zeros(rows, STEP_RESULT), *(np.zeros((rows, width)) for width in widths))
-
-
-def take_rows(buffers: Buffers, rows: slice | NDArray[np.bool_]) -> Buffers:
-    """Return some rows of all buffers."""
-    return Buffers(*(array[rows] for array in buffers))

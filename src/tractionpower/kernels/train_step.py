@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from tractionpower.kernels.demand import demand_current, demanded_traction, fill_row, own_current
 from tractionpower.kernels.jit import inlined
 from tractionpower.kernels.motion import run_step
-from tractionpower.kernels.pantograph import auxiliary_current, current_limit, traction, write_row
+from tractionpower.kernels.pantograph import auxiliary_current, current_limit
 from tractionpower.kernels.series_motors import at_full, choose_notch, lowest_notch, notch_below
 from tractionpower.kernels.train_tables import (
     DWELLING,
@@ -33,7 +34,7 @@ _MOST_TRIES = 60
 def wish(tables, state, k, t, h):
     """Let train `k` try the step from `t` [s] of length `h` [s] as if the voltage did not limit it.
 
-    Writes the trial and its tally; series motors choose their notch, which is held while the network is solved.
+    Writes the trial, its tally and its demand; series motors choose their notch, held while the network is solved.
     """
     train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
     called = (state.arrived_s, state.left_s)
@@ -45,6 +46,38 @@ def wish(tables, state, k, t, h):
     run_step(tables, train, trial, tally, (t, h), np.inf, called)
     if train.drive == SERIES_MOTORS:
         _hold_notch(tables, train, mover, trial, tally, t)
+    demand = state.demands[k]
+    _write_demand(tables, train, mover, tally, demand, h)
+    trial.limit = mover.limit  # where the train was is what counts
+    if train.regenerates and tally.electric_j > 0.0 and tally.traction_j > 0.0:
+        _expect_braking(tables, state, k, (t, h), demand)
+
+
+@inlined
+def _expect_braking(tables, state, k, clock, demand):
+    """Take the braking of a step that begins with traction from what the last voltage permits, where it limits.
+
+    With the whole effort the train would come onto its braking curve faster, or at all.
+    """
+    train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
+    got_w, _, _, _ = demanded_traction(tables, train, trial, demand, mover.voltage_v)
+    if got_w >= demand.need_w * (1.0 - _SAME):
+        return
+    _retry(tables, state, k, clock, got_w * demand.moving)
+    demand.gained_w = train.brake_efficiency * state.done[k].electric_j / clock[1]
+    _restart(tables, state, k)
+    run_step(tables, train, trial, state.wishes[k], clock, np.inf, (state.arrived_s, state.left_s))
+    trial.limit = mover.limit  # where the train was is what counts
+
+
+@inlined
+def _write_demand(tables, train, mover, tally, demand, h):
+    """Note what the trial asks of the line; limits hold while the train moves, powers are means of the step."""
+    demand.moving, demand.on_line = tally.moving_s / h, tally.on_line_s / h
+    demand.need_w = tally.line_j / tally.moving_s if tally.moving_s > 0.0 else 0.0
+    demand.line_a = line_current_limit(tables, train, mover, tally.moving_s > 0.0)
+    demand.gained_w = train.brake_efficiency * tally.electric_j / h
+    demand.speed_mps, demand.half_s_per_kg, demand.resistance_n, demand.mean_mps = midpoint_of(train, mover, tally)
 
 
 @inlined
@@ -101,37 +134,57 @@ def _switch_relay(train, mover, t, h):
 
 
 @inlined
-def settle(tables, state, k, clock, u, row):
-    """Let train `k` do what the voltage `u` [V] permits of its wish over the step (start, length) [s], and fill `row`."""
+def settle(tables, state, k, clock, line, row):
+    """Let train `k` do what the voltage permits of its wish, and fill `row`.
+
+    Parameters
+    ----------
+    clock : tuple
+        Start and length of the step [s].
+    line : tuple
+        Voltage [V], current of the whole train [A], and the share of its demand that the line serves: 1 unless all demand
+        had to be cut.
+    """
     t, h = clock
-    train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
+    u, current, served = line
+    train, mover, trial, demand = tables.trains[k], state.movers[k], state.trials[k], state.demands[k]
     wished, done = state.wishes[k], state.done[k]
-    moving = wished.moving_s / h  # limits hold while the train moves, powers of a row are means of the step
-    need_w = wished.line_j / wished.moving_s if moving > 0.0 else 0.0
-    lines = (u, line_current_limit(tables, train, mover, moving > 0.0))
-    trial.limit = mover.limit
-    got_w, current, resistor_w, by = traction(tables, train, trial, need_w, lines, midpoint_of(train, mover, wished))
-    row.time_s, row.s_m, row.v_mps = t, mover.s_m, mover.v_mps
+    got_w, taken, resistor_w, by = demanded_traction(tables, train, trial, demand, u)
+    got_w *= served
+    row.train, row.time_s, row.s_m, row.v_mps = k, t, mover.s_m, mover.v_mps
     limited_by = wished.limited_by
-    if not got_w >= need_w * (1.0 - _SAME):
-        _retry(tables, state, k, clock, got_w * moving)
+    if not got_w >= demand.need_w * (1.0 - _SAME):
+        _retry(tables, state, k, clock, got_w * demand.moving)
         limited_by = by
     else:
         state.done[k] = wished
     v = mover.v_mps
     state.movers[k] = trial
     mover.voltage_v, mover.slowing = u, mover.v_mps < v
-    if train.drive == SERIES_MOTORS and done.traction_j == 0.0:  # motors that were off start in the first grouping
-        mover.notch, mover.notch_since_s = 0, -np.inf
+    row.grouping = 0
+    if train.drive == SERIES_MOTORS:
+        if done.traction_j > 0.0:
+            row.grouping = tables.notches[train.first_notch + mover.notch].series
+        else:  # motors that were off start in the first grouping
+            mover.notch, mover.notch_since_s = 0, -np.inf
     stuck = mover.status == RUNNING and mover.v_mps == 0.0 and done.phase >= HOLDING
     mover.held_s = mover.held_s + h if stuck else 0.0
-    write_row(train, done, row, h, lines, (u * current * moving, resistor_w * moving))
+    part = demand.moving * served
+    parts = (u * own_current(train, demand, u) * served, u * taken * part, resistor_w * part)
+    fill_row(train, done, row, h, (u, current), parts)
     row.wished_n = wished.wished_ns / h
     row.acceleration_mps2 = (mover.v_mps - v) / h
     row.phase = done.phase
     if row.phase < 0:
         row.phase = WAITING if mover.status == OUTSIDE else DWELLING
     row.limited_by = limited_by
+
+
+@inlined
+def settle_alone(tables, state, k, clock, u, row):
+    """Let train `k` do what the voltage `u` [V] of an infinite bus permits of its wish, and fill `row`."""
+    current, _ = demand_current(tables, tables.trains[k], state.trials[k], state.demands[k], u)
+    settle(tables, state, k, clock, (u, current, 1.0), row)
 
 
 @inlined

@@ -186,10 +186,27 @@ TALLY = np.dtype(
 )
 """What a train does in one step."""
 
+DEMAND = np.dtype(
+    [
+        ("need_w", "f8"),  # wished power while it moves: of an inverter drive from the line, of others at the wheel
+        ("moving", "f8"),  # share of the step in which it moves, and in which it is on the line
+        ("on_line", "f8"),
+        ("line_a", "f8"),  # largest train current that the line allows
+        ("gained_w", "f8"),  # mean power that the electric brake gives
+        ("speed_mps", "f8"),  # at the start of the step
+        ("half_s_per_kg", "f8"),  # half of the time that it moves over its inertia
+        ("resistance_n", "f8"),
+        ("mean_mps", "f8"),  # mean speed of the trial
+    ]
+)
+"""What a train asks of the line in one step, before the voltage is known."""
+
 TRAIN_ROW = np.dtype(
     [
+        ("train", "i8"),
         ("time_s", "f8"),
         ("s_m", "f8"),
+        ("moved_m", "f8"),
         ("v_mps", "f8"),
         ("acceleration_mps2", "f8"),
         ("phase", "i8"),
@@ -211,9 +228,12 @@ TRAIN_ROW = np.dtype(
         ("returned_w", "f8"),  # fed back into the line
         ("recovered_w", "f8"),  # of braking, used on the train or fed back
         ("brake_w", "f8"),  # power of all brakes at the wheel
+        ("on_line_s", "f8"),  # time on the line within the step
+        ("coupling_w", "f8"),  # by which the power differs from what the train reckons with at constant voltage
+        ("grouping", "i8"),  # motors in series of the notch of series motors that are on, else 0
     ]
 )
-"""A step of a train: time, place, speed, phase at its start; means over the step of all else."""
+"""A step of a train: time, place, speed, phase at its start; means over the step of all else, `moved_m` its way."""
 
 
 class TrainState(NamedTuple):
@@ -222,6 +242,7 @@ class TrainState(NamedTuple):
     movers: NDArray[np.void]
     trials: NDArray[np.void]  # MOVER
     wishes: NDArray[np.void]  # TALLY of the trial
+    demands: NDArray[np.void]  # DEMAND of the trial
     done: NDArray[np.void]  # TALLY of the step
     arrived_s: NDArray[np.float64]  # by row of `TrainTables.stops`; NaN: not yet
     left_s: NDArray[np.float64]
@@ -240,6 +261,7 @@ def new_train_state(tables: TrainTables) -> TrainState:
         movers=movers,
         trials=movers.copy(),
         wishes=np.zeros(trains, TALLY),
+        demands=np.zeros(trains, DEMAND),
         done=np.zeros(trains, TALLY),
         arrived_s=np.full(stops, np.nan),
         left_s=np.full(stops, np.nan),

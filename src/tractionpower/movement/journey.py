@@ -88,8 +88,7 @@ class Journey:
 
     def ledgers(self) -> dict[str, TrainLedger]:
         """Return the mechanical ledger and that from pantograph to wheel."""
-        end = (self.end_m, self.end_mps)
-        mechanical = mechanical_ledger(self.rows, self.seconds, end, self.formation, self.path)
+        mechanical = mechanical_ledger(self.rows, self.seconds, self.formation, self.path)
         return {"mechanical": mechanical, "pantograph_to_wheel": pantograph_ledger(self.rows, self.seconds)}
 
 
@@ -139,7 +138,7 @@ def _run(movement: Movement, state: TrainState, k: int, voltage: NDArray[np.void
         run=planned.run,
         path=planned.path,
         rows=np.concatenate(blocks),
-        calls=_calls(planned, state, int(train["first_stop"])),
+        calls=calls_of(planned, state, int(train["first_stop"])),
         status=_STATUS[end],
         start_s=planned.start_s,
         finished_s=float(state.movers[k]["finished_s"]) if end == ARRIVED else start,
@@ -151,7 +150,8 @@ def _run(movement: Movement, state: TrainState, k: int, voltage: NDArray[np.void
     )
 
 
-def _calls(planned: PlannedRun, state: TrainState, first: int) -> tuple[JourneyCall, ...]:
+def calls_of(planned: PlannedRun, state: TrainState, first: int) -> tuple[JourneyCall, ...]:
+    """Return the calls of a run with the times of `state`, in which those of the run begin at row `first`."""
     return tuple(
         JourneyCall(
             station=item.call.station,

@@ -47,10 +47,8 @@ class TrainLedger:
         return self.gap_share <= self.allowed_share
 
 
-def mechanical_ledger(
-    rows: NDArray[np.void], seconds: Floats, end: tuple[float, float], mass: Formation, path: RoutePath
-) -> TrainLedger:
-    """Return work at the wheel against kinetic and potential energy, resistance and brakes.
+def mechanical_parts(rows: NDArray[np.void], seconds: Floats, mass: Formation, path: RoutePath) -> dict[str, Floats]:
+    """Return work at the wheel, changes of kinetic and potential energy, work of resistance and brakes of each row [J].
 
     Kinetic energy counts rotating masses; potential energy is that of the mean height under the train. The work of the
     running resistance is integrated anew from places and speeds, not from the forces of the steps.
@@ -58,45 +56,40 @@ def mechanical_ledger(
     Parameters
     ----------
     rows
-        Steps of the train, records of TRAIN_ROW.
+        Steps of trains of one formation on one route, records of TRAIN_ROW.
     seconds
         Time for which each row holds [s].
-    end
-        Place [m] and speed [m/s] at the end of the last row.
     mass, path
         The train, and its route.
     """
-    s, v = np.append(rows["s_m"], end[0]), np.append(rows["v_mps"], end[1])
-    before, after = v[:-1], v[1:]
+    s, before = rows["s_m"], rows["v_mps"]
+    ends, after = s + rows["moved_m"], before + rows["acceleration_mps2"] * seconds
     linear = 0.5 * (before + after)
     square = (before**2 + before * after + after**2) / 3.0
     cubic = 0.5 * linear * (before**2 + after**2)
-    moving = np.divide(np.diff(s), linear, out=np.zeros_like(linear), where=linear > 0.0)  # a train may stand in part of a row
-    running = mass.a_n * (s[-1] - s[0]) + moving @ (mass.b_ns_per_m * square + mass.c_ns2_per_m2 * cubic)
-    wheel, brakes = float(seconds @ rows["wheel_w"]), float(seconds @ rows["brake_w"])
-    ends, spread = s[[0, -1]], mass.spread_m
-    height = _mean_under(path, path.height_m, ends, spread)
+    moving = np.divide(ends - s, linear, out=np.zeros_like(linear), where=linear > 0.0)  # a train may stand in part of a row
+    running = mass.a_n * (ends - s) + moving * (mass.b_ns_per_m * square + mass.c_ns2_per_m2 * cubic)
     (single, single_drag), (double, double_drag) = mass.tunnel
     added = path.curve_m + single * path.single_tunnel_m + double * path.double_tunnel_m
-    curves = _mean_under(path, added, ends, spread)
     drag = single_drag * path.single_tunnel_m + double_drag * path.double_tunnel_m
-    dragged = np.diff(_mean_under(path, drag, s, spread)) @ (0.5 * (before**2 + after**2))
-    return TrainLedger(
-        {
-            "wheel": -wheel,
-            "kinetic": 0.5 * mass.inertia_kg * float(v[-1] ** 2 - v[0] ** 2),
-            "potential": mass.mass_kg * GRAVITY * float(height[1] - height[0]),
-            "resistance": float(running + mass.mass_kg * GRAVITY * (curves[1] - curves[0]) + dragged),
-            "brakes": brakes,
-        },
-        MECHANICAL_SHARE,
+    spread = mass.spread_m
+    height, curves, dragged = (
+        _mean_under(path, values, ends, spread) - _mean_under(path, values, s, spread) for values in (path.height_m, added, drag)
     )
+    weight = mass.mass_kg * GRAVITY
+    return {
+        "wheel": -rows["wheel_w"] * seconds,
+        "kinetic": 0.5 * mass.inertia_kg * (after**2 - before**2),
+        "potential": weight * height,
+        "resistance": running + weight * curves + dragged * 0.5 * (before**2 + after**2),
+        "brakes": rows["brake_w"] * seconds,
+    }
 
 
-def pantograph_ledger(rows: NDArray[np.void], seconds: Floats) -> TrainLedger:
-    """Return energy from the line against work at the wheel, losses, auxiliaries, and what braking gives.
+def pantograph_parts(rows: NDArray[np.void], seconds: Floats) -> dict[str, Floats]:
+    """Return energy from the line, work at the wheel, losses, auxiliaries, and what braking gives, of each row [J].
 
-    A drive that gives more than it takes leaves a gap, too.
+    A drive that gives more than it takes leaves a gap, too. `coupling` is what the constant-voltage coupling leaves out.
     """
     named = {
         "line": -rows["voltage_v"] * rows["current_a"],
@@ -105,9 +98,24 @@ def pantograph_ledger(rows: NDArray[np.void], seconds: Floats) -> TrainLedger:
         "starting_resistors": rows["starting_resistor_w"],
         "auxiliaries": rows["auxiliary_w"],
         "recovered": -rows["recovered_w"],
+        "coupling": rows["coupling_w"],
         "out_of_nothing": np.maximum(-rows["drive_loss_w"], 0.0),
     }
-    return TrainLedger({name: float(seconds @ power) for name, power in named.items()}, ELECTRIC_SHARE)
+    return {name: power * seconds for name, power in named.items()}
+
+
+def mechanical_ledger(rows: NDArray[np.void], seconds: Floats, mass: Formation, path: RoutePath) -> TrainLedger:
+    """Return the mechanical ledger of one train; parameters as of `mechanical_parts`."""
+    return TrainLedger(_sums(mechanical_parts(rows, seconds, mass, path)), MECHANICAL_SHARE)
+
+
+def pantograph_ledger(rows: NDArray[np.void], seconds: Floats) -> TrainLedger:
+    """Return the ledger of one train from pantograph to wheel."""
+    return TrainLedger(_sums(pantograph_parts(rows, seconds)), ELECTRIC_SHARE)
+
+
+def _sums(parts: dict[str, Floats]) -> dict[str, float]:
+    return {name: float(values.sum()) for name, values in parts.items()}
 
 
 def _mean_under(path: RoutePath, values: Floats, s: Floats, spread_m: float) -> Floats:

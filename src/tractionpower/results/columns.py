@@ -93,7 +93,8 @@ TABLES: dict[str, tuple[Column, ...]] = {
         _column("lowest_voltage_v", "Lowest voltage between contact line and rail."),
         _column("mean_voltage_v", "Mean voltage over the run."),
         _column("highest_voltage_v", "Highest voltage."),
-        _column("count", "Number of steps.", "i4"),
+        _column("count", "Number of steps, or of steps of trains.", "i4"),
+        _column("where", "cross_section: a fixed place, in every step; pantograph: trains within 0.25 km of it.", "text"),
     ),
     "events": (
         TIME,

@@ -6,10 +6,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import numpy as np
+
 from tractionpower.model.base import format_time
 from tractionpower.model.quantity import unit_of
-from tractionpower.results.extremes import Extremes
+from tractionpower.results.extremes import Array, Extremes
 from tractionpower.results.ledgers import ElectricLedger
+from tractionpower.results.windows import ClockDemand, SlidingWindows, window_label
 
 LEDGER_FIGURES = {
     "source": ("source_energy_kwh", "sum of E I over the whole run"),
@@ -53,7 +56,7 @@ class KeyFigure:
 
 def voltage_figure(which: str, value: float, place: str, when_s: float) -> KeyFigure:
     """Return the ``lowest`` or ``highest`` voltage [V] of a run, with its place and time [s]."""
-    definition = f"{which} voltage between contact line and rail at cross-sections and loads"
+    definition = f"{which} mean of a step between contact line and rail, at trains, loads and cross-sections"
     return KeyFigure(f"{which}_voltage_v", float(value), place, format_time(when_s), definition)
 
 
@@ -69,6 +72,54 @@ def substation_figures(names: Sequence[str], current: Extremes, power: Extremes,
         when = format_time(power.highest_s[k])
         yield KeyFigure("highest_power_kw", float(power.highest[k]) / 1000.0, place, when, "highest mean of a step, U I")
         yield KeyFigure("energy_kwh", float(energy_j[k]) / 3.6e6, place, "", "sum of U I over the steps")
+
+
+@dataclass(frozen=True, slots=True)
+class SubstationWindows:
+    """Sliding windows of all substations.
+
+    Attributes
+    ----------
+    power, current
+        Highest sliding means of the power at the busbars [W] and root mean squares of the current [A].
+    demand
+        Means of the power over quarters of an hour by the clock [W].
+    """
+
+    power: SlidingWindows
+    current: SlidingWindows
+    demand: ClockDemand
+
+    @classmethod
+    def of(cls, substations: int, step_s: float) -> SubstationWindows:
+        """Return windows of which nothing is known yet."""
+        power, current = SlidingWindows(substations, step_s), SlidingWindows(substations, step_s, squares=True)
+        return cls(power, current, ClockDemand(substations, step_s))
+
+    def add(self, time_s: Array, current_a: Array, power_w: Array) -> None:
+        """Add rows: start of the steps [s], currents [A] and powers [W] of shape (rows, substations)."""
+        self.power.add(time_s, power_w)
+        self.current.add(time_s, current_a)
+        self.demand.add(time_s, power_w)
+
+
+def window_figures(names: Sequence[str], windows: SubstationWindows) -> Iterator[KeyFigure]:
+    """Yield the highest sliding means and the demand of all substations; windows longer than the run are left out."""
+    power, current, demand = windows.power, windows.current, windows.demand
+    for k, name in enumerate(names):
+        place = f"substation {name}"
+        for n, seconds in enumerate(power.windows_s):
+            label, words = window_label(seconds), window_label(seconds).replace("_", " ")
+            if np.isfinite(power.best[n, k]):
+                when = format_time(power.best_from_s[n, k])
+                definition = f"highest sliding mean over {words}, U I; time is the start of the window"
+                yield KeyFigure(f"highest_mean_power_{label}_kw", float(power.best[n, k]) / 1000.0, place, when, definition)
+                when = format_time(current.best_from_s[n, k])
+                definition = f"highest sliding root mean square over {words}; time is the start of the window"
+                yield KeyFigure(f"highest_rms_current_{label}_a", float(current.best[n, k]), place, when, definition)
+        if np.isfinite(demand.best[k]):
+            when, definition = format_time(demand.best_from_s[k]), "highest mean over a quarter of an hour by the clock, U I"
+            yield KeyFigure("highest_clock_15_min_power_kw", float(demand.best[k]) / 1000.0, place, when, definition)
 
 
 def load_figures(names: Sequence[str], power: Extremes, step_s: float) -> Iterator[KeyFigure]:

@@ -16,7 +16,7 @@ class ElectricLedger:
     A step closes within 1e-9 of the gross power exchanged plus 1 mW.
     """
 
-    NAMES = ("source", "regulation", "load", "conductor")
+    NAMES = ("source", "regulation", "train", "load", "conductor")
 
     def __init__(self) -> None:
         self._total = np.zeros(len(self.NAMES))
@@ -26,7 +26,8 @@ class ElectricLedger:
         """Add the results of steps, records of `tractionpower.kernels.tables.STEP_RESULT`."""
         powers = np.stack([steps[f"{name}_w"] for name in self.NAMES], axis=1)
         self._total = add_up(self._total, powers * step_s)
-        gap = np.abs(steps["source_w"] - steps["regulation_w"] - steps["load_w"] - steps["conductor_w"])
+        taken = steps["train_w"] + steps["load_w"] + steps["conductor_w"]
+        gap = np.abs(steps["source_w"] - steps["regulation_w"] - taken)
         gap[np.isnan(gap)] = np.inf  # not a number must not pass for a balance
         if gap.size:
             self.worst_gap_w = max(self.worst_gap_w, float(gap.max()))

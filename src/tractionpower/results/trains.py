@@ -114,36 +114,138 @@ def calls_table(calls: Sequence[CallRow]) -> pa.Table:
     return make_table("calls", columns)
 
 
-def train_figures(
-    train: str, rows: NDArray[np.void], seconds: Array, *, length_m: float, journey_s: float, running_s: float
-) -> Iterator[KeyFigure]:
-    """Yield the key figures of one journey.
+@dataclass(frozen=True, slots=True)
+class TrainSummary:
+    """What one train did, summed up.
 
-    Parameters
+    Attributes
     ----------
     train
         Identifier of the run.
-    rows
-        Records of `TRAIN_ROW`.
-    seconds
-        What each row lasts [s].
     length_m
         Distance that the train ran [m].
     journey_s, running_s
         Time from the start to the end, with stops and without [s].
+    highest_mps, highest_mps_s
+        Highest speed at the start of a step [m/s], and when [s after midnight].
+    taken_j, returned_j
+        Energy taken from the line and fed back [J].
+    highest_a, highest_a_s
+        Highest mean current of a step [A], and when [s after midnight].
     """
-    place = f"train {train}"
-    yield KeyFigure("length_km", length_m / 1000.0, place, "", "distance run")
+
+    train: str
+    length_m: float
+    journey_s: float
+    running_s: float
+    highest_mps: float
+    highest_mps_s: float
+    taken_j: float
+    returned_j: float
+    highest_a: float
+    highest_a_s: float
+
+
+def sum_up(
+    train: str, rows: NDArray[np.void], seconds: Array, *, length_m: float, journey_s: float, running_s: float
+) -> TrainSummary:
+    """Return the summary of one train from its rows, records of `TRAIN_ROW` that last `seconds` [s] each."""
+    fastest, most = int(rows["v_mps"].argmax()), int(rows["current_a"].argmax())
+    return TrainSummary(
+        train, length_m, journey_s, running_s,
+        float(rows["v_mps"][fastest]), float(rows["time_s"][fastest]),
+        float((rows["power_w"] + rows["returned_w"]) @ seconds), float(rows["returned_w"] @ seconds),
+        float(rows["current_a"][most]), float(rows["time_s"][most]),
+    )  # fmt: skip
+
+
+def train_figures(summary: TrainSummary) -> Iterator[KeyFigure]:
+    """Yield the key figures of one train."""
+    place, running_s = f"train {summary.train}", summary.running_s
+    yield KeyFigure("length_km", summary.length_m / 1000.0, place, "", "distance run")
     yield KeyFigure("running_time_s", running_s, place, "", "from start to end, without the time at stops")
-    yield KeyFigure("journey_time_s", journey_s, place, "", "from start to end, stops included")
-    mean = length_m / running_s if running_s > 0.0 else 0.0
+    yield KeyFigure("journey_time_s", summary.journey_s, place, "", "from start to end, stops included")
+    mean = summary.length_m / running_s if running_s > 0.0 else 0.0
     yield KeyFigure("mean_speed_kmh", mean * KMH_PER_MPS, place, "", "distance run over the running time")
-    fastest = int(rows["v_mps"].argmax())
-    when = format_time(rows["time_s"][fastest])
-    yield KeyFigure("highest_speed_kmh", float(rows["v_mps"][fastest]) * KMH_PER_MPS, place, when, "at the start of a step")
-    taken_w = rows["power_w"] + rows["returned_w"]
-    yield KeyFigure("energy_taken_kwh", float(taken_w @ seconds) / J_PER_KWH, place, "", "taken from the line")
-    yield KeyFigure("energy_returned_kwh", float(rows["returned_w"] @ seconds) / J_PER_KWH, place, "", "fed back into the line")
-    most = int(rows["current_a"].argmax())
-    when = format_time(rows["time_s"][most])
-    yield KeyFigure("highest_current_a", float(rows["current_a"][most]), place, when, "highest mean of a step")
+    when = format_time(summary.highest_mps_s)
+    yield KeyFigure("highest_speed_kmh", summary.highest_mps * KMH_PER_MPS, place, when, "at the start of a step")
+    yield KeyFigure("energy_taken_kwh", summary.taken_j / J_PER_KWH, place, "", "taken from the line")
+    yield KeyFigure("energy_returned_kwh", summary.returned_j / J_PER_KWH, place, "", "fed back into the line")
+    when = format_time(summary.highest_a_s)
+    yield KeyFigure("highest_current_a", summary.highest_a, place, when, "highest mean of a step")
+
+
+@dataclass(frozen=True, slots=True)
+class SupplySummary:
+    """How one train fared on the supply that feeds it.
+
+    Attributes
+    ----------
+    train
+        Identifier of the run.
+    auxiliary_j, drive_loss_j, starting_resistor_j, refused_j
+        Energies of auxiliaries, of losses between pantograph and wheel, in starting resistors, and what the line did not
+        take back [J].
+    lowest_v, lowest_s
+        Lowest mean voltage of a step [V], and when [s after midnight].
+    ten_seconds_v, ten_seconds_s
+        Lowest mean over 10 s [V] and when it begins [s]; NaN where the train was not so long on the line.
+    current_weighted_v, time_mean_v
+        Mean useful voltage by both definitions [V]; NaN without current, without traction.
+    late_s
+        Computed less planned time at its last call with a planned time [s]; NaN without one.
+    """
+
+    train: str
+    auxiliary_j: float
+    drive_loss_j: float
+    starting_resistor_j: float
+    refused_j: float
+    lowest_v: float
+    lowest_s: float
+    ten_seconds_v: float
+    ten_seconds_s: float
+    current_weighted_v: float
+    time_mean_v: float
+    late_s: float
+
+
+def supply_figures(summary: SupplySummary) -> Iterator[KeyFigure]:
+    """Yield the key figures of one train that a run with the network adds."""
+    place = f"train {summary.train}"
+    energies = {
+        "auxiliary_energy_kwh": (summary.auxiliary_j, "auxiliaries and heating"),
+        "drive_loss_kwh": (summary.drive_loss_j, "between pantograph and wheel, without resistors"),
+        "starting_resistor_energy_kwh": (summary.starting_resistor_j, "heat in starting resistors"),
+        "refused_energy_kwh": (summary.refused_j, "of the electric brake that the line did not take"),
+    }
+    for name, (joule, definition) in energies.items():
+        yield KeyFigure(name, joule / J_PER_KWH, place, "", definition)
+    when = format_time(summary.lowest_s)
+    yield KeyFigure("lowest_pantograph_voltage_v", summary.lowest_v, place, when, "lowest mean of a step at the pantograph")
+    if np.isfinite(summary.ten_seconds_v):
+        when = format_time(summary.ten_seconds_s)
+        yield KeyFigure("lowest_10_s_mean_voltage_v", summary.ten_seconds_v, place, when, "lowest sliding mean over 10 s")
+    yield from useful_figures(place, summary.current_weighted_v, summary.time_mean_v)
+    if np.isfinite(summary.late_s):
+        definition = "computed less planned time at the last call with a planned time"
+        yield KeyFigure("late_at_end_s", summary.late_s, place, "", definition)
+
+
+def useful_figures(place: str, current_weighted_v: float, time_mean_v: float) -> Iterator[KeyFigure]:
+    """Yield the mean useful voltage of a train or zone by both definitions; what is NaN is left out."""
+    is_train = place.startswith("train ")
+    definitions = {
+        "mean_useful_voltage_current_weighted_v": (
+            current_weighted_v,
+            "mean useful voltage, current-weighted: sum U |I| dt / sum |I| dt"
+            + ("" if is_train else ", every train divided by its time in the zone"),
+        ),
+        "mean_useful_voltage_time_mean_v": (
+            time_mean_v,
+            "mean useful voltage, time mean: " + ("over steps with traction effort" if is_train else "over all trains and steps"),
+        ),
+    }
+    for name, (volts, definition) in definitions.items():
+        if np.isfinite(volts):
+            yield KeyFigure(name, volts, place, "", definition)

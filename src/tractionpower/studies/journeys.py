@@ -16,6 +16,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from tractionpower.alignment.routes import stop_distance
+from tractionpower.cosimulation.calls import call_rows, time_at_stops
 from tractionpower.cosimulation.check import check_scenario
 from tractionpower.cosimulation.run import Writer
 from tractionpower.errors import Problem, UsageError, raise_errors
@@ -25,20 +26,17 @@ from tractionpower.model.base import format_time
 from tractionpower.model.limits import system_voltages
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import Scenario
-from tractionpower.movement.journey import Journey, JourneyCall, theoretical_journeys
+from tractionpower.movement.journey import Journey, theoretical_journeys
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter
-from tractionpower.results.trains import CallRow, calls_table, train_figures, trains_table
+from tractionpower.results.trains import CallRow, calls_table, sum_up, train_figures, trains_table
 from tractionpower.results.versions import versions
 
 Form = Literal["time", "speed"]
 
 LEAST_STEP_S, MOST_STEP_S = 0.02, 5.0
 """Steps that are allowed [s]."""
-
-AT_END_M = 0.1
-"""A call this near to the start or the end of a run is its first or its last one [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +117,7 @@ def compute_journeys(
     step = scenario.clock.step_s if step_s is None else float(step_s)
     prepared = time.perf_counter()
     journeys = tuple(theoretical_journeys(scenario, voltage_v=voltage, step_s=step, form=form, runs=wanted))
-    calls = {journey.run.id: call_rows(journey) for journey in journeys}
+    calls = {journey.run.id: call_rows(journey.run.id, journey.calls, route_end(journey)) for journey in journeys}
     for journey in journeys:
         writer.append("trains", _trains_table(journey))
     every_call = [row for rows in calls.values() for row in rows]
@@ -232,29 +230,6 @@ def choose_runs(scenario: Scenario, named: Sequence[str] | None) -> list[str]:
     return known if named is None else sorted(set(named))
 
 
-def call_rows(journey: Journey) -> list[CallRow]:
-    """Return the calls of a train as rows: one for each arrival, departure or passing that is planned or takes place.
-
-    Where the run begins there is no arrival, and where it ends no departure, unless the timetable has one.
-    """
-    return [row for call in journey.calls for row in _rows_of(journey, call)]
-
-
-def _rows_of(journey: Journey, call: JourneyCall) -> Iterator[CallRow]:
-    planned = {"arrival": _given(call.planned_arrival_s), "departure": _given(call.planned_departure_s)}
-    actual = {"arrival": float(call.arrival_s), "departure": float(call.departure_s)}
-    if call.kind == "pass":
-        times = [_first(planned["arrival"], planned["departure"]), _first(actual["arrival"], actual["departure"])]
-        yield CallRow(journey.run.id, call.station, "pass", *times)
-        return
-    at_end = call.at_m > float(journey.ceiling["from_m"][-1]) - AT_END_M
-    ways = {"arrival": call.at_m >= AT_END_M, "departure": not at_end}
-    for kind, takes_place in ways.items():
-        if takes_place or np.isfinite(planned[kind]):
-            dwell = actual["departure"] - actual["arrival"] if kind == "departure" else np.nan
-            yield CallRow(journey.run.id, call.station, kind, planned[kind], actual[kind], dwell)
-
-
 def stations_on(journey: Journey, line: Line) -> list[tuple[float, str]]:
     """Return distance [m] and name of every station that the route passes, in its order."""
     places = [(stop_distance(journey.path, station), station.name or station.id) for station in line.stations]
@@ -265,15 +240,20 @@ def route_in_words(journey: Journey, line: Line) -> str:
     """Return the route of a train: the stations at its ends, or else track and kilometre."""
     named = {round(place): name for place, name in stations_on(journey, line)}
     ends = []
-    for place in (0.0, float(journey.ceiling["from_m"][-1])):
+    for place in (0.0, route_end(journey)):
         track, km = journey.path.place(place)
         ends.append(named.get(round(place), f"track {track}, km {km:.1f}"))
     return " – ".join(ends)
 
 
+def route_end(journey: Journey) -> float:
+    """Return where the run ends [m]."""
+    return float(journey.ceiling["from_m"][-1])
+
+
 def end_of(journey: Journey) -> float:
     """Return the distance of the front at the end of a journey [m]."""
-    return float(journey.ceiling["from_m"][-1]) if journey.status == "complete" else float(journey.rows["s_m"][-1])
+    return route_end(journey) if journey.status == "complete" else float(journey.rows["s_m"][-1])
 
 
 def why_not_complete(journey: Journey) -> str:
@@ -311,26 +291,10 @@ def _trains_table(journey: Journey) -> Any:
 
 def _figures(journey: Journey) -> Iterator[KeyFigure]:
     whole = journey.finished_s - journey.start_s
-    stood = sum(_stood(journey, call) for call in journey.calls if call.kind == "stop")
-    return train_figures(
-        journey.run.id, journey.rows, journey.seconds, length_m=end_of(journey), journey_s=whole, running_s=whole - stood
-    )
-
-
-def _stood(journey: Journey, call: JourneyCall) -> float:
-    """Return how long a train stood at a call [s]; at the start of its run since it is on the line."""
-    if not np.isfinite(call.departure_s):
-        return max(0.0, journey.finished_s - call.arrival_s) if np.isfinite(call.arrival_s) else 0.0
-    arrived = call.arrival_s if np.isfinite(call.arrival_s) else journey.start_s if call.at_m < AT_END_M else call.departure_s
-    return float(call.departure_s - max(arrived, journey.start_s))
-
-
-def _given(seconds: float | None) -> float:
-    return float("nan") if seconds is None else float(seconds)
-
-
-def _first(*seconds: float) -> float:
-    return next((value for value in seconds if np.isfinite(value)), float("nan"))
+    stood = time_at_stops(journey.calls, journey.start_s, journey.finished_s)
+    length_m, running_s = end_of(journey), whole - stood
+    rows, seconds = journey.rows, journey.seconds
+    return train_figures(sum_up(journey.run.id, rows, seconds, length_m=length_m, journey_s=whole, running_s=running_s))
 
 
 def _hint(name: str, known: Sequence[str]) -> str:

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tractionpower.kernels.block_tables import SECTION
 from tractionpower.kernels.tables import (
     BLOCKED_CONDUCTANCE_S,
     CONDUCTOR,
     EDGE,
     NO_SLOT,
     PORT,
-    SECTION,
     SEGMENT,
     SHARED_NODE_M,
     SPAN,
@@ -37,13 +38,41 @@ CEILING_FACTOR = 5.0
 
 
 @dataclass(frozen=True, slots=True)
+class Stretch:
+    """A stretch of a track within one span, with its contact line and rails.
+
+    Attributes
+    ----------
+    track
+        Identifier of the track.
+    from_m, to_m
+        Ends by the distance from the start of the track [m].
+    span, positive, negative
+        Numbers of the span and of the conductors.
+    length_m
+        Length of the span [m].
+    no_load_v
+        Highest no-load voltage that sources put on the contact line; 0 without one [V].
+    """
+
+    track: str
+    from_m: float
+    to_m: float
+    span: int
+    positive: int
+    negative: int
+    length_m: float
+    no_load_v: float
+
+
+@dataclass(frozen=True, slots=True)
 class SupplyTables:
     """A supply system compiled for the solver, with the names that its numbers stand for.
 
     Attributes
     ----------
     network
-        Tables of the solver; the ports are the sources, then the loads, each by identifier.
+        Tables of the solver; the ports are the sources, then the loads, each by identifier, then probes, then trains.
     edges
         Fixed resistances between skeleton nodes, record array of `EDGE`.
     substations
@@ -59,6 +88,10 @@ class SupplyTables:
     sections, section_table
         Track and kilometre of the places whose voltage is recorded, so that the voltage runs straight between them; and
         where the solver finds it, record array of `SECTION`.
+    stretches
+        Where contact lines are, by track and place.
+    train_port
+        Ports of trains, which stand nowhere yet.
     voltages
         Voltage limits of the system.
     """
@@ -74,12 +107,22 @@ class SupplyTables:
     feeder_end: NDArray[np.int64]
     sections: tuple[tuple[str, float], ...]
     section_table: NDArray[np.void]
+    stretches: tuple[Stretch, ...]
+    train_port: NDArray[np.int64]
     voltages: SystemVoltages
 
 
-def compile_network(supply: Supply, line: Line, limits: tuple[Limit, ...]) -> SupplyTables:
-    """Compile a supply system that has passed `supply.checks.check_supply`."""
-    return _Compiler(supply, line, limits).compile()
+def compile_network(supply: Supply, line: Line, limits: tuple[Limit, ...], train_segments: Sequence[int] = ()) -> SupplyTables:
+    """Compile a supply system that has passed `supply.checks.check_supply`.
+
+    Parameters
+    ----------
+    supply, line, limits
+        What is declared.
+    train_segments
+        For each train, how many segments its port may have.
+    """
+    return _Compiler(supply, line, limits).compile(train_segments)
 
 
 class _Compiler:
@@ -95,9 +138,9 @@ class _Compiler:
         self.nodes = number_nodes(self.topology, self.sources)
         self.structure = self.nodes.structure
 
-    def compile(self) -> SupplyTables:
+    def compile(self, train_segments: Sequence[int]) -> SupplyTables:
         spans, conductors, terminals, scatter = self._span_tables()
-        ports, segments = self._port_tables()
+        ports, segments = _with_trains(*self._port_tables(), train_segments)
         network = Network(
             spans, conductors, ports, segments, terminals, scatter,
             self.structure.column_start, self.structure.row, self.structure.target, self._base(),
@@ -117,6 +160,8 @@ class _Compiler:
             feeder_end=_pairs([self._feeder_end(feeder) for feeder in self.topology.feeders]),
             sections=tuple(place[:2] for place in self.topology.sections) + tuple(self.probes),
             section_table=self._section_table(),
+            stretches=tuple(self._stretches()),
+            train_port=np.arange(len(ports) - len(train_segments), len(ports), dtype=np.int64),
             voltages=self.voltages,
         )
 
@@ -210,6 +255,16 @@ class _Compiler:
         first = len(self.sources) + len(self.loads)
         return np.array(rows + [(-1, -1, first + k) for k in range(len(self.probes))], SECTION)
 
+    def _stretches(self) -> Iterator[Stretch]:
+        for number, span in enumerate(self.topology.spans):
+            first = self.first_conductor[number]
+            for track, rail in span.returns.items():
+                axis, contact = self.topology.axes[track], span.contact(track)
+                ends = axis.stretch_m(span.from_km, span.to_km)
+                if ends is not None:
+                    volts = self._no_load_v(span.conductors[contact].left)
+                    yield Stretch(track, *ends, number, first + contact, first + rail, span.length_m, volts)
+
     # -- ports ---------------------------------------------------------------------------------------------------
 
     def _port_tables(self) -> tuple[NDArray[np.void], NDArray[np.void]]:
@@ -247,6 +302,17 @@ class _Compiler:
         port["span"], port["x_m"] = number, x
         port["positive"], port["negative"] = first + contact, first + span.returns[track]
         port["start_v"] = self._no_load_v(span.conductors[contact].left)
+
+
+def _with_trains(
+    ports: NDArray[np.void], segments: NDArray[np.void], train_segments: Sequence[int]
+) -> tuple[NDArray[np.void], NDArray[np.void]]:
+    """Return ports and segments with room for trains behind them."""
+    room = np.array(train_segments, np.int64)
+    trains = np.zeros(len(room), PORT)
+    trains["demand"], trains["scale"] = True, 1.0
+    trains["first_segment"] = len(segments) + np.cumsum(room) - room
+    return np.concatenate((ports, trains)), np.concatenate((segments, np.zeros(int(room.sum()), SEGMENT)))
 
 
 def _pairs(rows: list[tuple[int, int]]) -> NDArray[np.int64]:

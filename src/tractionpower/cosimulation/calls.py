@@ -1,0 +1,61 @@
+"""Calls of trains as rows of a table: planned (RJ) beside computed times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from tractionpower.movement.journey import JourneyCall
+from tractionpower.results.trains import CallRow
+
+AT_END_M = 0.1
+"""A call this near to the start or the end of a run is its first or its last one [m]."""
+
+
+def call_rows(train: str, calls: Sequence[JourneyCall], end_m: float) -> list[CallRow]:
+    """Return the calls of a train as rows: one for each arrival, departure or passing that is planned or takes place.
+
+    Where the run begins there is no arrival, and where it ends, at `end_m` [m], no departure, unless the timetable has one.
+    """
+    return [row for call in calls for row in _rows_of(train, call, end_m)]
+
+
+def _rows_of(train: str, call: JourneyCall, end_m: float) -> Iterator[CallRow]:
+    planned = {"arrival": _given(call.planned_arrival_s), "departure": _given(call.planned_departure_s)}
+    actual = {"arrival": float(call.arrival_s), "departure": float(call.departure_s)}
+    if call.kind == "pass":
+        times = [_first(planned["arrival"], planned["departure"]), _first(actual["arrival"], actual["departure"])]
+        yield CallRow(train, call.station, "pass", *times)
+        return
+    ways = {"arrival": call.at_m >= AT_END_M, "departure": not call.at_m > end_m - AT_END_M}
+    for kind, takes_place in ways.items():
+        if takes_place or np.isfinite(planned[kind]):
+            dwell = actual["departure"] - actual["arrival"] if kind == "departure" else np.nan
+            yield CallRow(train, call.station, kind, planned[kind], actual[kind], dwell)
+
+
+def time_at_stops(calls: Sequence[JourneyCall], start_s: float, finished_s: float) -> float:
+    """Return how long a train that was on the line from `start_s` to `finished_s` stood at its calls [s]."""
+    return sum(_stood(call, start_s, finished_s) for call in calls if call.kind == "stop")
+
+
+def _stood(call: JourneyCall, start_s: float, finished_s: float) -> float:
+    """Return how long a train stood at a call [s]; at the start of its run since it is on the line."""
+    if not np.isfinite(call.departure_s):
+        return max(0.0, finished_s - call.arrival_s) if np.isfinite(call.arrival_s) else 0.0
+    arrived = call.arrival_s if np.isfinite(call.arrival_s) else start_s if call.at_m < AT_END_M else call.departure_s
+    return float(call.departure_s - max(arrived, start_s))
+
+
+def late_at_end(rows: Sequence[CallRow]) -> float:
+    """Return how late a train was at the last call that it came to and the timetable has a time for [s]; NaN without one."""
+    return next((row.late_s for row in reversed(rows) if np.isfinite(row.late_s)), float("nan"))
+
+
+def _given(seconds: float | None) -> float:
+    return float("nan") if seconds is None else float(seconds)
+
+
+def _first(*seconds: float) -> float:
+    return next((value for value in seconds if np.isfinite(value)), float("nan"))

@@ -1,0 +1,70 @@
+"""Trains that stand in each other: they do not see each other before signals exist, so this is counted and warned of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.cosimulation.places import Placed
+from tractionpower.model.base import format_time
+
+Numbers = NDArray[np.int64]
+
+
+@dataclass(slots=True)
+class Overlap:
+    """A pair of trains: steps in which they overlap, and the first of them."""
+
+    steps: int
+    time_s: float
+    track: int
+    km: float
+
+
+class Overlaps:
+    """Pairs of trains that occupy the same metre of a track in the same step.
+
+    Parameters
+    ----------
+    names, lengths_km
+        Trains by number, and their lengths [km].
+    tracks
+        Identifiers of the tracks by number.
+    """
+
+    def __init__(self, names: Sequence[str], lengths_km: NDArray[np.float64], tracks: Sequence[str]) -> None:
+        self._names, self._lengths_km, self._tracks = names, lengths_km, tracks
+        self.pairs: dict[tuple[int, int], Overlap] = {}
+
+    def add(self, time_s: NDArray[np.float64], train: Numbers, placed: Placed) -> None:
+        """Look at rows of trains, those of a step together."""
+        length = self._lengths_km[train]
+        low = np.where(placed.sign > 0, placed.km - length, placed.km)
+        order = np.lexsort((low, placed.track, time_s))
+        time_s, train, low, track = time_s[order], train[order], low[order], placed.track[order]
+        high = low + length[order]
+        # Sorted by their lower ends, trains that overlap are neighbours, unless one lies within another.
+        for away in (1, 2):
+            same = (time_s[away:] == time_s[:-away]) & (track[away:] == track[:-away])
+            for n in np.flatnonzero(same & (low[away:] < high[:-away])).tolist():
+                pair = sorted((int(train[n]), int(train[n + away])))
+                known = self.pairs.setdefault(
+                    (pair[0], pair[1]), Overlap(0, float(time_s[n]), int(track[n]), float(low[n + away]))
+                )
+                known.steps += 1
+
+    def summary(self) -> dict[str, Any]:
+        """Return how many pairs of trains overlap, and in words which."""
+        first = sorted(self.pairs.items(), key=lambda item: (item[1].time_s, item[0]))
+        told = [
+            f"{self._names[a]} and {self._names[b]} ({format_time(found.time_s)}, track {self._tracks[found.track]},"
+            f" km {found.km:.1f}, {found.steps} steps)"
+            for (a, b), found in first[:5]
+        ]
+        more = f" and {len(first) - 5} more pairs" if len(first) > 5 else ""
+        message = f"trains do not see each other; these overlap: {'; '.join(told)}{more}" if told else ""
+        return {"count": len(first), "message": message}

@@ -1,0 +1,116 @@
+"""The trains on the line within one step: they enter, ask the line, do what it permits, leave."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tractionpower.kernels.demand import demand_current
+from tractionpower.kernels.jit import inlined, njit
+from tractionpower.kernels.motion import TINY_S
+from tractionpower.kernels.ports import port_current
+from tractionpower.kernels.train_port import write_port
+from tractionpower.kernels.train_step import settle, wish
+from tractionpower.kernels.train_tables import GONE
+
+
+@njit
+def enter_trains(tables, state, t):
+    """Put the trains that start before the end of the step at `t` [s] on the line."""
+    progress, fleet = state.progress[0], tables.fleet
+    before = progress.active
+    while progress.entered < tables.entries.shape[0]:
+        k = tables.entries[progress.entered]
+        if tables.trains.trains[k].start_s >= t + tables.clock[1] - TINY_S:
+            break
+        progress.entered += 1
+        if state.trains.movers[k].status == GONE:  # before the clock began
+            continue
+        at = progress.active
+        while at > 0 and state.active[at - 1] > k:
+            state.active[at] = state.active[at - 1]
+            at -= 1
+        state.active[at] = k
+        progress.active += 1
+        w = state.work.ports[fleet[k].port]
+        w.before_v, w.i = np.inf, 0.0
+        _place(tables, state, k)
+        w.u = tables.network.ports[fleet[k].port].start_v
+    if progress.active != before:
+        _choose_ports(tables, state)
+
+
+@inlined
+def _choose_ports(tables, state):
+    """Put the ports of the trains on the line into service behind the fixed ones."""
+    work, progress = state.work, state.progress[0]
+    fixed = tables.network.ports.shape[0] - tables.fleet.shape[0]
+    for p in range(fixed):
+        work.order[p] = p
+    for n in range(progress.active):
+        work.order[fixed + n] = tables.fleet[state.active[n]].port
+    work.in_service[0] = fixed + progress.active
+    progress.stale = True
+
+
+@inlined
+def _place(tables, state, k):
+    """Put the port of train `k` to where its front is."""
+    fleet, s = tables.fleet[k], state.trains.movers[k].s_m
+    n = state.way[k]
+    while n + 1 < fleet.ways and tables.ways[fleet.first_way + n + 1].from_m <= s:
+        n += 1
+    state.way[k] = n
+    way, port = tables.ways[fleet.first_way + n], tables.network.ports[fleet.port]
+    port.span, port.positive, port.negative, port.start_v = way.span, way.positive, way.negative, way.start_v
+    port.x_m = min(max(way.x_m + way.sign * (s - way.from_m), 0.0), way.length_m)
+
+
+@njit
+def ask_line(tables, state, t):
+    """Let all trains on the line try the step from `t` [s] and write what they take over the voltage into their ports.
+
+    With the coupling of constant voltage they take the current of that voltage whatever the line gives.
+    """
+    h, fixed_v = tables.clock[1], tables.clock[2]
+    segments = tables.network.segments
+    for n in range(state.progress[0].active):
+        k = state.active[n]
+        wish(tables.trains, state.trains, k, t, h)
+        _place(tables, state, k)
+        port = tables.network.ports[tables.fleet[k].port]
+        port.scale = 1.0
+        if fixed_v > 0.0:
+            train = tables.trains.trains[k]
+            i, _ = demand_current(tables.trains, train, state.trains.trials[k], state.trains.demands[k], fixed_v)
+            one = segments[port.first_segment]
+            one.from_v, one.a, one.b, one.c = -np.inf, i, 0.0, 0.0
+            port.segments = 1
+        else:
+            write_port(tables.trains, state.trains, k, port, segments, tables.fleet[k].room, state.breaks)
+
+
+@njit
+def answer_trains(tables, state, t, rows, used):
+    """Let all trains do what their voltage permits; their rows go to `rows` from `used` on, whose new end is returned.
+
+    Trains that have left the line go out of service.
+    """
+    progress, fixed_v = state.progress[0], tables.clock[2]
+    stay = 0
+    for n in range(progress.active):
+        k = state.active[n]
+        port = tables.network.ports[tables.fleet[k].port]
+        u = state.work.ports[tables.fleet[k].port].u
+        i, row = port_current(tables.network.segments, port, u), rows[used]
+        at = fixed_v if fixed_v > 0.0 else u
+        settle(tables.trains, state.trains, k, (t, tables.clock[1]), (at, i, port.scale), row)
+        row.coupling_w = (u - at) * i
+        row.voltage_v, row.power_w = u, u * i
+        used += 1
+        state.active[stay] = k
+        if state.trains.movers[k].status != GONE:
+            stay += 1
+    if stay != progress.active:
+        progress.active = stay
+        _choose_ports(tables, state)
+    return used
