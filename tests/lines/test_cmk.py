@@ -1,0 +1,194 @@
+"""The Central Trunk Line that ships: what is real of it agrees with its sources, and nobody catches up with another train.
+
+Rectifier units, altitudes and cables are typed here again from the works that the line's README names.
+"""
+
+import csv
+import re
+from collections import Counter
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tractionpower
+
+FOLDER = Path(__file__).parents[2] / "lines" / "cmk"
+HEADWAY_S = 180.0
+
+# transformer [VA], short-circuit voltage, load losses [W], rated current [A] and power [W] of one unit
+UNITS = {
+    "PD-17": (6.4e6, 0.10, 53.5e3, 1700.0, 5.61e6),
+    "PD-1.7": (6.3e6, 0.066, 38e3, 1700.0, 5.61e6),
+    "PD-16": (5.85e6, 0.088, 46e3, 1600.0, 5.28e6),
+}
+ALTITUDES = {
+    "Grodzisk": 105,
+    "Korytow": 141,
+    "Szeligi": 175,
+    "Strzalki": 165,
+    "Idzikowice": 196,
+    "Opoczno": 184,
+    "Zawiercie": 333,
+}
+
+
+def source_of(va, uk, losses_w, current_a, power_w, units, fault_va):
+    """Return no-load voltage [V] and internal resistance [ohm] of a 12-pulse substation by its rated data."""
+    at_rated_v = 3300.0 + losses_w / current_a * (power_w / va) ** 2 + 3 * 2.0
+    no_load_v = at_rated_v / (1.0 - 0.38 * uk * power_w / va - 0.26 * units * va / fault_va)
+    return no_load_v, (no_load_v - 3300.0) / (units * current_a)
+
+
+@pytest.fixture(scope="module")
+def cmk():
+    return tractionpower.load(FOLDER)
+
+
+@pytest.fixture(scope="module")
+def journeys(cmk):
+    return tractionpower.journeys(cmk)
+
+
+def track_of(run):
+    (leg,) = run.route
+    return leg.track
+
+
+def test_nothing_is_wrong_or_doubtful(cmk):
+    assert tractionpower.check(cmk) == []
+
+
+def test_stations_stand_where_the_source_has_them(cmk):
+    with (FOLDER / "source" / "simrail-sdk-line-4.csv").open(encoding="utf-8", newline="") as file:
+        places = {row["name"]: float(row["km"]) for row in csv.DictReader(file) if row["line"] == "4"}
+    assert len(places) == 20
+    assert {station.name: station.km for station in cmk.line.stations}.items() <= places.items()
+    assert len(cmk.line.stations) == 14
+    licence = (FOLDER / "source" / "LICENSE-simrail-sdk.txt").read_text(encoding="utf-8")
+    assert licence.startswith("MIT License")
+    assert "simrail.express" in licence
+
+
+def test_gradients_lead_to_the_known_altitudes(cmk):
+    rows = cmk.line.gradients
+    assert max(abs(row.permille) for row in rows) <= 6.0
+    kms = [rows[0].from_km, *(row.to_km for row in rows)]
+    rises = [row.permille * (row.to_km - row.from_km) for row in rows]
+    altitude = 105.0 + np.concatenate([[0.0], np.cumsum(rises)])
+    km_of = {station.id: station.km for station in cmk.line.stations}
+    for station, metres in ALTITUDES.items():
+        assert np.interp(km_of[station], kms, altitude) == pytest.approx(metres, abs=0.1), station
+
+
+def test_the_formula_gives_the_published_substation():
+    no_load_v, ohm = source_of(6.3e6, 0.11, 38e3, 1700.0, 5.61e6, 2, 102.088e6)
+    assert no_load_v == pytest.approx(3571.255, abs=0.01)
+    assert ohm == pytest.approx(0.079781, rel=1e-4)
+    assert (no_load_v - 3300.0) / no_load_v == pytest.approx(0.075955, rel=1e-4)
+
+
+def test_substations_have_the_characteristic_of_their_units(cmk):
+    text = (FOLDER / "supply.yaml").read_text(encoding="utf-8")
+    named = re.findall(r"\{id: ([\w ]+), km:[^#]*# (\d) x (PD-[\d.]+), (\d+) MVA", text)
+    stations = {station.id: station for station in cmk.supply.substations}
+    assert [name for name, *_ in named] == list(stations)
+    for name, units, unit, fault_mva in named:
+        data, station = UNITS[unit], stations[name]
+        no_load_v, ohm = source_of(*data, int(units), float(fault_mva) * 1e6)
+        assert station.no_load_voltage_v == pytest.approx(no_load_v, abs=0.051), name
+        assert station.internal_resistance_ohm == pytest.approx(ohm, abs=5.1e-5), name
+        heat_w = int(units) * (data[2] + 3 * 2.0 * data[3])  # at rated load
+        assert station.dissipative_resistance_ohm * (int(units) * data[3]) ** 2 == pytest.approx(heat_w, rel=1e-3), name
+        assert station.feeder_resistance_ohm == pytest.approx(0.060 * 0.35 / 2, abs=5e-5)
+        assert station.return_resistance_ohm == pytest.approx(0.125 * 0.35 / 6, abs=5e-5)
+
+
+def test_one_cabin_stands_between_two_substations(cmk):
+    places = sorted(station.km for station in cmk.supply.substations)
+    assert all(15.0 <= b - a <= 21.0 for a, b in pairwise(places))
+    cabins = [cabin.km for cabin in cmk.supply.section_cabins]
+    assert [sum(a < km < b for km in cabins) for a, b in pairwise(places)] == [1] * len(cabins)
+    assert len(cabins) == len(places) - 1
+
+
+def test_a_busy_day_in_both_directions(cmk):
+    runs = cmk.timetable.trains
+    assert all((int(run.id.split()[-1]) % 2 == 1) == (track_of(run) == "1") for run in runs)
+    begins = {track: [run.start.time for run in runs if track_of(run) == track] for track in ("1", "2")}
+    assert min(map(len, begins.values())) >= 60
+    assert max(max(times) for times in begins.values()) < 86_400.0
+    by_hour = Counter(int(time // 3600) for times in begins.values() for time in times)
+    peaks = [by_hour[hour] for hour in (6, 7, 15, 16)]
+    assert min(peaks) > max(by_hour[hour] for hour in (10, 11, 12, 20, 21))
+
+
+def planned_places(run, km_of):
+    """Return kilometre -> planned arrival and departure of a run, its start included."""
+    (leg,) = run.route
+    places = {leg.from_km: (run.start.time, run.start.time)}
+    for call in run.calls:
+        places[km_of[call.station]] = (call.arrival, call.arrival if call.departure is None else call.departure)
+    return places
+
+
+def assert_apart(first, second, names):
+    """Assert that of two runs, given as place -> (arrival, departure), one is everywhere well behind the other."""
+    shared = first.keys() & second.keys()
+    if not shared:
+        return
+    behind = min(second[place][0] - first[place][1] for place in shared)
+    before = min(first[place][0] - second[place][1] for place in shared)
+    assert max(behind, before) >= HEADWAY_S, names
+
+
+def pairs_on_a_track(cmk, places):
+    for track in ("1", "2"):
+        names = sorted(run.id for run in cmk.timetable.trains if track_of(run) == track)
+        for index, name in enumerate(names):
+            for other in names[index + 1 :]:
+                yield places[name], places[other], (name, other)
+
+
+def test_planned_times_keep_the_headway(cmk):
+    km_of = {station.id: station.km for station in cmk.line.stations}
+    places = {run.id: planned_places(run, km_of) for run in cmk.timetable.trains}
+    for pair in pairs_on_a_track(cmk, places):
+        assert_apart(*pair)
+
+
+def test_theoretical_journeys_are_on_time_and_keep_the_headway(cmk, journeys):
+    assert journeys.run["status"] == "complete"
+    assert {note["status"] for note in journeys.run["journeys"]} == {"complete"}
+    calls = journeys.table("calls")
+    assert len(calls) > 400
+    assert calls["late_s"].max() < 1.0
+    places = {}
+    for name, rows in journeys.table("trains").groupby("train", observed=True):
+        km, time = rows["position_km"].to_numpy(), rows["time_s"].to_numpy()
+        if km[0] > km[-1]:
+            km, time = km[::-1], time[::-1]
+        grid = np.arange(np.ceil(km[0]), np.floor(km[-1])) + 0.3  # no train stops there
+        places[name] = {place: (moment, moment) for place, moment in zip(grid, np.interp(grid, km, time), strict=True)}
+    for pair in pairs_on_a_track(cmk, places):
+        assert_apart(*pair)
+
+
+def test_trains_have_five_to_eight_percent_in_hand(cmk, journeys):
+    figures = {(row["place"], row["name"]): row["value"] for row in journeys.key_figures}
+    for run in cmk.timetable.trains:
+        stood = sum(call.departure - call.arrival for call in run.calls if call.departure is not None)
+        moving = max(call.departure or call.arrival for call in run.calls) - run.start.time - stood
+        assert 1.05 <= moving / figures[f"train {run.id}", "running_time_s"] <= 1.08, run.id
+
+
+@pytest.mark.slow
+def test_the_supply_carries_the_day(cmk):
+    results = tractionpower.simulate(cmk)
+    assert results.run["status"] == "complete"
+    assert results.run["flagged_steps"] == 0
+    assert results.run["overlaps"]["count"] == 0
+    assert {note["status"] for note in results.run["trains"]} == {"left", "on_line"}  # some are on their way at midnight
+    assert results.table("calls")["late_s"].max() < 60.0
+    assert 2600.0 < results.table("trains")["voltage_v"].min() < 2950.0  # a load worth designing for, above U_min2 with ease
