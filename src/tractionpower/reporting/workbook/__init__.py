@@ -1,0 +1,29 @@
+"""The workbook of a run, for people: cover with verdicts in words, inputs as used, tables, native charts, definitions."""
+# ruff: noqa: PLC0415 - openpyxl is imported when a workbook is written
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tractionpower.model.scenario import Scenario
+from tractionpower.results.results import Results
+
+
+def write_workbook(results: Results, scenario: Scenario, path: Path) -> Path:
+    """Write the workbook of a run and return where it is.
+
+    The file gets its name when it is complete. Where another program holds the earlier one open, the new one stands
+    beside it, with ``.new`` before its suffix.
+
+    Parameters
+    ----------
+    results
+        What the run found; tables that it did not write are left out.
+    scenario
+        What was run.
+    path
+        Name of the file, ``report.xlsx``.
+    """
+    from tractionpower.reporting.workbook.book import build, save_as
+
+    return save_as(build(results, scenario), path)

@@ -1,0 +1,163 @@
+"""Cells: their styles, and values that are safe in them. What a user names is text, never a formula."""
+
+from __future__ import annotations
+
+import math
+import re
+from copy import copy
+from numbers import Integral, Real
+from typing import Any
+
+import numpy as np
+from openpyxl.cell.cell import Cell
+from openpyxl.styles import Alignment, Border, Font, PatternFill, Side
+
+BLUE, INK, GREY, PALE = "1F4E79", "333333", "777777", "D9D9D9"
+GREEN_FILL, RED_FILL, AMBER_FILL, PLAIN_FILL = "C6EFCE", "FFC7CE", "FFEB9C", "F2F2F2"
+
+SECONDS_PER_DAY = 86400.0
+"""Excel counts times in days."""
+
+LONGEST = 16_000
+"""Characters that a cell takes; Excel's limit is 32 767, and it counts some characters twice."""
+
+FORMATS = {
+    "general": "General",
+    "0": "0",
+    "0.0": "0.0",
+    "0.00": "0.00",
+    "0.000": "0.000",
+    "percent": "0.0%",
+    "exponent": "0.0E+00",
+    "time": "[hh]:mm:ss",
+}
+"""Number formats by the name of the style."""
+
+_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+_FORMULA_SIGNS = ("=", "+", "-", "@", "\t", "'")
+_LINE = Side(style="thin", color=PALE)
+_BORDER = Border(bottom=_LINE)
+
+
+class Styles:
+    """The styles of a workbook by name, each made once.
+
+    The public setters of a cell hash five objects each time, which takes most of the time of a big workbook; here a
+    style is made on one cell and its number is given to all others.
+    """
+
+    def __init__(self, workbook: Any) -> None:
+        self._workbook = workbook
+        self._known: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._known:
+            cell = Cell(self._workbook.worksheets[0], row=1, column=1)
+            for attribute, value in _look(name).items():
+                setattr(cell, attribute, value)
+            self._known[name] = cell._style
+        return self._known[name]
+
+
+def put(sheet: Any, row: int, column: int, value: Any, style: Any) -> Any:
+    """Write a value into a cell, a text as text whatever it begins with, and return the cell."""
+    cell = sheet.cell(row, column)
+    cell._style = style
+    shown = plain(value)
+    if shown is None:
+        return cell
+    cell.value = shown
+    if isinstance(shown, str):
+        cell.data_type = "s"  # a leading = would make a formula of it, a name such as #N/A an error
+        if shown.startswith(_FORMULA_SIGNS):
+            cell._style = copy(style)
+            cell.quotePrefix = 1  # it stays text when someone edits the cell
+    return cell
+
+
+def put_formula(sheet: Any, row: int, column: int, formula: str, style: Any) -> None:
+    """Write a formula of the program's own."""
+    cell = sheet.cell(row, column)
+    cell._style = style
+    cell.value = formula
+
+
+def plain(value: Any) -> float | int | str | None:
+    """Return a value as what a cell can hold; None where there is none.
+
+    >>> plain(float("nan")), plain(True)
+    (None, 'yes')
+    """
+    if value is None or isinstance(value, str):
+        return None if value is None else clean(value)
+    if isinstance(value, bool | np.bool_):
+        return "yes" if value else "no"
+    if isinstance(value, Integral):
+        return int(value)
+    if isinstance(value, Real):
+        number = float(value)
+        return number if math.isfinite(number) else None if math.isnan(number) else "infinite"
+    text = str(value)
+    return None if text in ("<NA>", "NaT") else clean(text)
+
+
+def clean(text: str) -> str:
+    """Return a text without what XML forbids, and no longer than a cell takes."""
+    text = _FORBIDDEN.sub("\ufffd", text.replace("\r\n", "\n").replace("\r", "\n"))
+    return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+
+
+def shorten(text: str, most: int) -> str:
+    """Return a text of at most `most` characters.
+
+    >>> shorten("Wloszczowa", 6)
+    'Wlosz…'
+    """
+    text = " ".join(clean(text).split())
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def days(seconds: Any) -> Any:
+    """Return seconds as the days that Excel counts times in; None and NaN stay."""
+    return None if seconds is None else seconds / SECONDS_PER_DAY
+
+
+def fill(colour: str) -> Any:
+    """Return a plain fill of a colour."""
+    return PatternFill("solid", start_color=colour, end_color=colour)
+
+
+def _look(name: str) -> dict[str, Any]:
+    """Return font, fill, alignment, border and number format of a style by name."""
+    if name in FORMATS:
+        look = {"alignment": Alignment(horizontal="right", vertical="top"), "border": _BORDER, "number_format": FORMATS[name]}
+        return look
+    if name.startswith("sum "):
+        return _look(name[4:]) | {"font": Font(bold=True), "border": Border(top=Side(style="thin", color=INK))}
+    wrapped = Alignment(wrap_text=True, vertical="top")
+    looks: dict[str, dict[str, Any]] = {
+        "text": {"alignment": wrapped, "border": _BORDER},
+        "any": {"alignment": Alignment(wrap_text=True, vertical="top", horizontal="left"), "border": _BORDER},
+        "head": {
+            "font": Font(bold=True, color="FFFFFF"),
+            "fill": fill(BLUE),
+            "alignment": Alignment(wrap_text=True, vertical="center", horizontal="center"),
+        },
+        "title": {"font": Font(bold=True, size=16, color=BLUE)},
+        "section": {"font": Font(bold=True, size=12, color=BLUE)},
+        "note": {"font": Font(italic=True, size=9, color=GREY)},
+        "label": {"font": Font(bold=True, color=INK), "alignment": wrapped},
+        "plain": {},
+        "wrapped": {"alignment": wrapped},
+        "link": {"font": Font(color="0563C1", underline="single")},
+        "good": {"fill": fill(GREEN_FILL), "alignment": wrapped},
+        "bad": {"fill": fill(RED_FILL), "alignment": wrapped},
+        "doubt": {"fill": fill(AMBER_FILL), "alignment": wrapped},
+        "neutral": {"fill": fill(PLAIN_FILL), "alignment": wrapped},
+    }
+    if name.startswith("big "):
+        return looks[name[4:]] | {
+            "font": Font(bold=True, size=14, color=INK),
+            "alignment": Alignment(wrap_text=True, vertical="center"),
+        }
+    return looks[name]
