@@ -11,6 +11,7 @@ import resource
 import sys
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 from cases import CASES, Case, shipped_voltages
@@ -50,8 +51,7 @@ def scenario(case: Case) -> Scenario:
     slow = [(low, low + 1.0) for low in range(10, int(end), 20)]
     edges = [0.0, *(km for pair in slow for km in pair), end]
     line["speed_limits"] = [
-        {"from_km": low, "to_km": high, "kmh": 60.0 if n % 2 else 125.0}
-        for n, (low, high) in enumerate(zip(edges, edges[1:], strict=False))
+        {"from_km": low, "to_km": high, "kmh": 60.0 if n % 2 else 125.0} for n, (low, high) in enumerate(pairwise(edges))
     ]
     supply = case.supply("common_return").model_copy(update={"loads": ()})
     with (TIMETABLES / f"{case.name}.csv").open(encoding="utf-8", newline="") as file:
@@ -72,7 +72,12 @@ def scenario(case: Case) -> Scenario:
 
 def _run(row: dict[str, str]) -> dict[str, object]:
     leg = {"track": row["track"], "from_km": float(row["from_km"]), "to_km": float(row["to_km"])}
-    return {"id": row["id"], "train": "unit", "route": [leg], "start": {"time": row["time"], "speed_kmh": float(row["speed_kmh"])}}
+    return {
+        "id": row["id"],
+        "train": "unit",
+        "route": [leg],
+        "start": {"time": row["time"], "speed_kmh": float(row["speed_kmh"])},
+    }
 
 
 @dataclass(frozen=True)
@@ -133,8 +138,9 @@ def describe(results: list[Result]) -> str:
     rows = []
     for r in results:
         verdict = ", ".join(f"{s:g}: {goal(r.times.least, s)}" for s in GOALS_S[r.case])
-        rows.append([r.case, f"{r.times.least:.2f}", f"{r.times.median:.2f}", f"{r.times.least / STEPS * 1e6:.1f}",
-                     f"{r.trains:.1f}", f"{r.iterations:.2f}", f"{r.worst_a:.1e}", r.flagged, f"{r.lowest_v:.0f}", verdict])  # fmt: skip
+        times = [f"{r.times.least:.2f}", f"{r.times.median:.2f}", f"{r.times.least / STEPS * 1e6:.1f}"]
+        said = [f"{r.trains:.1f}", f"{r.iterations:.2f}", f"{r.worst_a:.1e}", r.flagged, f"{r.lowest_v:.0f}"]
+        rows.append([r.case, *times, *said, verdict])
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024 if sys.platform != "win32" else 0
     return (
         f"### A day of trains and network, 86 400 steps of 1 s (common return, one core)\n\n{table(headings, rows)}\n\n"

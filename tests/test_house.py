@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted((ROOT / "src" / "tractionpower").rglob("*.py"))
-HEAVY = ("numpy", "numba", "llvmlite", "pandas", "pyarrow", "pydantic", "ruamel", "matplotlib")
+HEAVY = ("numpy", "numba", "llvmlite", "pandas", "pyarrow", "pydantic", "ruamel", "matplotlib", "openpyxl")
 MODULE_LINES = 350
 FUNCTION_LINES = 60
 COMMANDS = [[], ["run"], ["check"], ["journey"], ["curves"], ["validate"], ["schema"], ["new"]]

@@ -136,7 +136,7 @@ class Recorder:
             groups.setdefault(place, []).append(number)
         order = sorted(groups, key=lambda place: (place[1], place[0]))
         tracks, found = self.trains.places.tracks, self.trains.profile()
-        fixed = {
+        fixed: dict[str, Any] = {
             "km": [km for km, _ in order],
             "track": [tracks.index(track) for _, track in order],
             "lowest_voltage_v": [low[groups[place]].min() for place in order],
@@ -241,9 +241,7 @@ class Recorder:
         assert limit is not None  # supply.checks has seen it, or the caller
         return limit
 
-    def _verdict(
-        self, title: str, name: str, unit: str, value: float, place: str, when: float, met: bool
-    ) -> dict[str, Any]:
+    def _verdict(self, title: str, name: str, unit: str, value: float, place: str, when: float, met: bool) -> dict[str, Any]:
         limit = self._limit(name)
         return {
             "name": title, "value": value, "unit": unit, "place": place, "time": format_time(when) if np.isfinite(when) else "",

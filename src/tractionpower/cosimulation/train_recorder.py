@@ -25,6 +25,7 @@ from tractionpower.movement.ledgers import (
     TrainLedger,
     mechanical_parts,
     pantograph_parts,
+    told_kwh,
 )
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.spells import TrainSpells
@@ -195,9 +196,9 @@ class TrainRecorder:
             "mechanical": (MECHANICAL, self._mechanical, MECHANICAL_SHARE),
             "pantograph_to_wheel": (PANTOGRAPH, self._pantograph, ELECTRIC_SHARE),
         }
-        return {kind: self._ledger(*details) for kind, details in kinds.items()}
+        return {kind: self._ledger(kind, *details) for kind, details in kinds.items()}
 
-    def _ledger(self, names: tuple[str, ...], energies: Floats, share: float) -> dict[str, Any]:
+    def _ledger(self, kind: str, names: tuple[str, ...], energies: Floats, share: float) -> dict[str, Any]:
         ledgers = [TrainLedger(dict(zip(names, row, strict=True)), share) for row in energies.tolist()]
         worst = max(range(len(ledgers)), key=lambda k: ledgers[k].gap_share, default=None)
         found: dict[str, Any] = {
@@ -205,7 +206,7 @@ class TrainRecorder:
             "worst_gap_share": 0.0 if worst is None else ledgers[worst].gap_share,
             "train": "" if worst is None else self.names[worst],
         }
-        return found | {f"{name}_kwh": float(abs(total)) / 3.6e6 for name, total in zip(names, energies.sum(axis=0), strict=True)}
+        return found | told_kwh(kind, dict(zip(names, energies.sum(axis=0).tolist(), strict=True)))
 
     @property
     def seen(self) -> NDArray[np.bool_]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,9 @@ from tractionpower.kernels.wayside import GRAVITY
 from tractionpower.movement.formation import Formation
 
 Floats = NDArray[np.float64]
+
+GIVEN = {"mechanical": ("wheel",), "pantograph_to_wheel": ("line", "recovered")}
+"""Parts of the ledgers that give energy to a train; all others spend it."""
 
 MECHANICAL_SHARE = 1e-3
 """The mechanical ledger closes within this share of what is exchanged."""
@@ -112,6 +116,11 @@ def mechanical_ledger(rows: NDArray[np.void], seconds: Floats, mass: Formation, 
 def pantograph_ledger(rows: NDArray[np.void], seconds: Floats) -> TrainLedger:
     """Return the ledger of one train from pantograph to wheel."""
     return TrainLedger(_sums(pantograph_parts(rows, seconds)), ELECTRIC_SHARE)
+
+
+def told_kwh(kind: str, energy_j: Mapping[str, float]) -> dict[str, float]:
+    """Return the energies of a ledger as they are told [kWh]: what is given and what is spent are both positive."""
+    return {f"{name}_kwh": (-joule if name in GIVEN[kind] else joule) / 3.6e6 for name, joule in energy_j.items()}
 
 
 def _sums(parts: dict[str, Floats]) -> dict[str, float]:

@@ -27,6 +27,7 @@ from tractionpower.model.limits import system_voltages
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import Scenario
 from tractionpower.movement.journey import Journey, theoretical_journeys
+from tractionpower.movement.ledgers import told_kwh
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter
@@ -206,8 +207,8 @@ def _ledgers(journeys: Sequence[Journey]) -> dict[str, dict[str, Any]]:
             entry["closes"] = entry["closes"] and ledger.closes
             if ledger.gap_share > entry["worst_gap_share"]:
                 entry |= {"worst_gap_share": ledger.gap_share, "train": journey.run.id}
-            for part, joule in ledger.energy_j.items():
-                entry[f"{part}_kwh"] = entry.get(f"{part}_kwh", 0.0) + abs(joule) / 3.6e6
+            for part, kwh in told_kwh(name, ledger.energy_j).items():
+                entry[part] = entry.get(part, 0.0) + kwh
     return found
 
 
