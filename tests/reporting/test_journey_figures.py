@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from fake_journeys import make_journey, make_line
 
-from tractionpower.reporting.journey_figures import course_of, journey_figure, whole_rows
+from tractionpower.reporting.journey_figures import journey_figure, whole_rows
+from tractionpower.reporting.route_axis import course_of
 from tractionpower.studies.journeys import stations_on
 
 

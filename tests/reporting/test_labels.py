@@ -28,6 +28,11 @@ def test_stops_come_before_places_that_are_passed():
     assert fitting([], [], 1.0) == []
 
 
+def test_wide_labels_need_more_room_than_narrow_ones():
+    assert fitting([0.0, 1.0, 2.0, 3.0], [False] * 4, [1.0, 1.0, 1.0, 1.0]) == [0, 1, 2, 3]
+    assert fitting([0.0, 1.0, 2.0, 3.0], [False, True, False, False], [1.0, 3.0, 1.0, 1.0]) == [1, 3]
+
+
 @settings(deadline=None, derandomize=True)
 @given(begin=st.floats(0.0, 1e5), width=st.floats(5.0, 2e5))
 def test_ticks_of_a_clock_are_round_evenly_spaced_and_few(begin, width):

@@ -4,14 +4,26 @@ import numpy as np
 import pytest
 from fake_journeys import make_journey
 
-from tractionpower.reporting.journeys import stations_of_all, write_journey_figures
-from tractionpower.reporting.train_graph import train_graph
+from tractionpower.reporting.journeys import line_of, planned_times, stations_of_all, write_journey_figures
+from tractionpower.reporting.train_graph import (
+    MOST_CIRCLES,
+    MOST_NAMES,
+    GraphPlaces,
+    TrainLine,
+    broken_where_it_jumps,
+    train_graph,
+)
 from tractionpower.studies.journeys import JourneyOutcome
+
+
+def graph_of(journeys, line, title=""):
+    lines = [line_of(journey) for journey in journeys]
+    return train_graph(lines, planned_times(journeys), GraphPlaces(stations_of_all(journeys, line)), title)
 
 
 @pytest.fixture
 def graph(line, journeys):
-    figure = train_graph(journeys, stations_of_all(journeys, line), "a study")
+    figure = graph_of(journeys, line, "a study")
     figure.canvas.draw()
     return figure
 
@@ -53,7 +65,7 @@ def test_times_are_those_of_a_clock_and_stations_are_named(graph, no_overlap):
 
 def test_names_of_trains_do_not_overlap(line, no_overlap):
     journeys = [make_journey(line, f"train {k}", backwards=bool(k % 2), start_s=6 * 3600.0 + 45.0 * k) for k in range(20)]
-    figure = train_graph(journeys, stations_of_all(journeys, line), "")
+    figure = graph_of(journeys, line)
     (axes,) = figure.axes
     assert len(axes.texts) >= 15
     no_overlap(figure, axes.texts)
@@ -70,3 +82,39 @@ def test_figures_of_the_trains_shown_and_none_of_an_earlier_run(tmp_path, line, 
     (tmp_path / "mine.png").write_bytes(b"")
     write_journey_figures(outcome, scenario, tmp_path, ["33"])
     assert {path.name for path in tmp_path.iterdir()} == {"train_graph.png", "train-33.png", "mine.png"}
+
+
+def test_of_many_trains_lines_are_thin_and_names_and_circles_stay_away():
+    many = [TrainLine(f"{k}", 60.0 * k + np.linspace(0.0, 900.0, 91), np.linspace(0.0, 20.0, 91)) for k in range(MOST_NAMES + 1)]
+    circles = [(60.0 * k, 0.0) for k in range(MOST_CIRCLES + 1)]
+    (axes,) = train_graph(many, circles, GraphPlaces(), "").axes
+    assert (len(axes.texts), drawn(axes, "planned (timetable)")) == (0, [])
+    (fewer,) = train_graph(many[:-1], circles[:-1], GraphPlaces(), "").axes
+    assert (len(fewer.texts) > 10, len(drawn(fewer, "planned (timetable)"))) == (True, 1)
+    assert axes.lines[0].get_linewidth() < fewer.lines[0].get_linewidth()
+
+
+def test_substations_and_cabins_stand_on_the_left_axis():
+    line = TrainLine("1", np.array([0.0, 600.0]), np.array([0.0, 20.0]))
+    places = GraphPlaces(devices=[(0.0, "A", True), (10.0, "C", False), (20.0, "B", True)])
+    (axes,) = train_graph([line], [], places, "").axes
+    (substations,), (cabins,) = drawn(axes, "substation"), drawn(axes, "section cabin")
+    assert (list(substations.get_ydata()), list(cabins.get_ydata())) == ([0.0, 20.0], [10.0])
+    assert set(substations.get_xdata()) == {0.0}
+    assert substations.get_marker() != cabins.get_marker()
+
+
+def test_a_line_is_broken_where_the_train_changes_to_a_track_with_other_kilometres():
+    place, track = np.array([0.0, 100.0, 200.0, 300.0]), np.array([0, 0, 1, 1])
+    km = broken_where_it_jumps(np.array([1.0, 1.1, 50.0, 50.1]), place, track)
+    assert np.isnan(km).tolist() == [False, False, True, False]
+    same = broken_where_it_jumps(np.array([1.0, 1.1, 1.2, 1.3]), place, track)
+    assert not np.isnan(same).any()
+
+
+def test_a_window_of_time_cuts_lines_and_keeps_the_mark_of_a_stuck_train_at_its_end():
+    stuck = TrainLine("1", np.arange(0.0, 100.0, 10.0), np.linspace(0.0, 9.0, 10), arrives=False)
+    early, late = stuck.between(20.0, 50.0), stuck.between(50.0, 500.0)
+    assert (early.time_s.tolist(), early.arrives) == ([20.0, 30.0, 40.0, 50.0], True)
+    assert (late.km[-1], late.arrives) == (9.0, False)
+    assert stuck.between(200.0, 300.0) is None

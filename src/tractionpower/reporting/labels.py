@@ -7,20 +7,27 @@ from collections.abc import Sequence
 CLOCK_STEPS_S = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 21600)
 """Steps between ticks of a clock [s]."""
 
+LETTER, LINE = 0.075, 0.17
+"""Width of a letter and height of a line of small text [inches]."""
 
-def fitting(places: Sequence[float], important: Sequence[bool], gap: float) -> list[int]:
+
+def fitting(places: Sequence[float], important: Sequence[bool], gap: float | Sequence[float]) -> list[int]:
     """Return the indices of the labels to show, rising by place, so that any two are `gap` or more apart.
 
-    Important ones come first, then those at the ends, then the others.
+    Important ones come first, then those at the ends, then the others. Where each label has a gap of its own, two need the
+    mean of theirs.
 
     >>> fitting([0.0, 1.0, 5.0, 5.5, 9.0], [False, True, False, False, False], 2.0)
     [1, 2, 4]
+    >>> fitting([0.0, 1.0, 2.0], [False, False, False], [1.0, 1.0, 3.0])
+    [0, 2]
     """
+    wide = [gap] * len(places) if isinstance(gap, int | float) else gap
     ends = {min(places, default=0.0), max(places, default=0.0)}
     order = sorted(range(len(places)), key=lambda k: (not important[k], places[k] not in ends, places[k]))
     kept: list[int] = []
     for k in order:
-        if all(abs(places[k] - places[other]) >= gap for other in kept):
+        if all(abs(places[k] - places[other]) >= (wide[k] + wide[other]) / 2 for other in kept):
             kept.append(k)
     return sorted(kept, key=lambda k: places[k])
 

@@ -9,6 +9,7 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from tractionpower.io.file_names import ENDING, file_names
 
@@ -31,9 +32,12 @@ STYLE: Any = {
 }
 
 
-def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure [inches] that needs no display; to be called inside ``mpl.rc_context(STYLE)``."""
-    figure = Figure(figsize=(width, height), layout="constrained")
+def new_figure(width: float, height: float, between: float = 0.02) -> Figure:
+    """Return an empty figure [inches] that needs no display; to be called inside ``mpl.rc_context(STYLE)``.
+
+    `between` is the space between columns of panels as a share of their width.
+    """
+    figure = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(wspace=between))
     FigureCanvasAgg(figure)
     return figure
 

@@ -1,0 +1,75 @@
+"""What axes of several figures have in common: the clock, limits of the voltage, devices of the supply along the line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+
+from tractionpower.model.limits import find_limit
+from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.labels import LETTER, clock, clock_ticks, fitting
+from tractionpower.reporting.style import GREY, INK
+
+LIMITS = {"u_min2": "U_min2", "u_n": "U_n", "u_max1": "U_max1", "u_max2": "U_max2"}
+"""Limits of the voltage that are drawn, and how they are written."""
+
+
+def set_clock(axes: Axes, begin_s: float, end_s: float, most: int = 10) -> None:
+    """Let the horizontal axis be a clock from `begin_s` to `end_s` [s], with at most some `most` ticks."""
+    axes.set_xlim(begin_s - 0.01 * (end_s - begin_s), end_s + 0.02 * (end_s - begin_s))
+    ticks = clock_ticks(begin_s, end_s, most)
+    axes.set_xticks(ticks, [clock(tick, ticks) for tick in ticks])
+
+
+def clock_label(axes: Axes) -> str:
+    """Return the label of an axis that is a clock."""
+    return "time of day [h:min:s]" if any(tick % 60 for tick in axes.get_xticks()) else "time of day [h:min]"
+
+
+def voltage_range(lowest: float, highest: float, room: float = 0.3) -> tuple[float, float]:
+    """Return from where to where an axis shows voltages between `lowest` and `highest` [V], with a share of `room` at both."""
+    margin = room * max(highest - lowest, 400.0)
+    return lowest - margin, highest + margin
+
+
+def limits_between(scenario: Scenario, low: float, high: float) -> list[tuple[str, float]]:
+    """Return the limits of the voltage that lie between two voltages [V], as name and value; equal ones together."""
+    found: dict[float, list[str]] = {}
+    for name, shown in LIMITS.items():
+        limit = find_limit(scenario.limits, scenario.supply.system, name)
+        if limit is not None and low < limit.value < high:
+            found.setdefault(limit.value, []).append(shown)
+    return [(", ".join(names), value) for value, names in found.items()]
+
+
+def draw_limits(axes: Axes, scenario: Scenario, *, names: bool = True) -> None:
+    """Draw the limits of the voltage within the vertical axis, with their names right of the axes."""
+    for shown, value in limits_between(scenario, *axes.get_ylim()):
+        axes.axhline(value, color=GREY, linewidth=0.9, linestyle=(0, (5, 3)), zorder=1.5)
+        if names:
+            axes.annotate(
+                f"{shown}\n{value:g} V", (1.0, value), (3, 0), xycoords=("axes fraction", "data"),
+                textcoords="offset points", ha="left", va="center", color=INK, fontsize=7.5, linespacing=1.0,
+            )  # fmt: skip
+
+
+def mark_devices(axes: Axes, devices: Sequence[tuple[float, str, bool]], inches: float, *, names: bool = True) -> None:
+    """Draw a line at substations and section cabins and name them above the axes, which are `inches` wide.
+
+    `devices` are place on the horizontal axis, name, and whether it is a substation. Where names would overlap,
+    substations keep theirs first; the others keep their sign where there is room for it.
+    """
+    low, high = axes.get_xlim()
+    per_inch = abs(high - low) / inches
+    places, important = [place for place, _, _ in devices], [substation for _, _, substation in devices]
+    named = set(fitting(places, important, [(len(name) + 2) * LETTER * per_inch for _, name, _ in devices]))
+    signed = set(fitting(places, [k in named for k in range(len(places))], 0.12 * per_inch))
+    for k, (place, name, substation) in enumerate(devices):
+        axes.axvline(place, color=GREY, linewidth=0.7 if substation else 0.5, alpha=0.6, zorder=0.5)
+        if names and k in signed:
+            style: Any = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points", "ha": "center", "color": INK}
+            axes.annotate("▲" if substation else "■", (place, 1.0), (0, 1), va="bottom", fontsize=6.5, **style)
+            if k in named:
+                axes.annotate(name, (place, 1.0), (0, 9), va="bottom", fontsize=7.5, **style)
