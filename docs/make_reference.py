@@ -43,6 +43,27 @@ SIGNS = """Parquet files in the folder of the run. Currents and powers are posit
 substation feeds. A row describes the step that begins at `time_s`; the sum of `power_kw` times the step is the energy.
 With `output.every_s` only the steps at that interval have rows; key figures use all of them.
 """
+FILES_OF_A_RUN = """## Other files
+
+| file | holds |
+|---|---|
+| `run.json` | Status, residuals, ledgers, verdicts; size and SHA-256 of every file. Written last: results are what it names. |
+| `key_figures.json` | The figures that sum the run up, each with name, value, unit, place, time, definition. |
+| `scenario.json` | What was computed, resolved: all inputs in one file. Its SHA-256 is the `input_hash` of the run. |
+| `report.xlsx`, `figures/` | For people; `tractionpower report DIR` writes them again from the tables, without a simulation. |
+| `.running/` | Complete parts of the tables while a run lasts. `tractionpower report DIR --partial` reads them after a crash. |
+
+## Tables for other programs
+
+`tractionpower export DIR --to csv,xlsx,netcdf [--tables trains,calls] [--out FOLDER]` writes into `DIR/export/`.
+
+- **csv**: one file for each table. UTF-8, comma, decimal point; a missing value is an empty cell. Texts are quoted and stand
+  there as they are: Excel takes one that begins with `=` for a formula when it opens a CSV file, so hand on xlsx instead.
+- **xlsx**: one workbook `tables.xlsx` with a sheet for each table; nothing in it becomes a formula. A table that is longer
+  than a sheet (1 048 575 rows) is refused: export it as CSV.
+- **netcdf**: one file for each table (classic format with 64-bit offsets), a variable for each column over the dimension
+  `row`, with unit and meaning. A missing number is NaN. Needs SciPy: `pip install tractionpower[netcdf]`.
+"""
 
 
 def inputs_page() -> str:
@@ -63,7 +84,7 @@ def results_page() -> str:
         parts.append(f"## {name}.parquet\n\n| column | unit | meaning |\n|---|---|---|")
         parts += [f"| `{c.name}` | {c.quantity.unit} | {c.quantity.meaning} |" for c in columns]
         parts.append("")
-    return "\n".join(parts)
+    return "\n".join([*parts, FILES_OF_A_RUN])
 
 
 def _table(model: type[BaseModel]) -> str:

@@ -21,7 +21,7 @@ def study(tmp_path, monkeypatch):
     return write_train_study(tmp_path / "six")
 
 
-FILES_WRITTEN = {"trains.parquet", "calls.parquet", "run.json", "key_figures.json", "figures"}
+FILES_WRITTEN = {"trains.parquet", "calls.parquet", "run.json", "key_figures.json", "scenario.json", "figures"}
 STEEP = ["--set", "line.gradients[1].permille=90", "--set", "vehicles[railcar].drive.starting_effort_kn=80"]
 
 

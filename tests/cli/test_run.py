@@ -12,28 +12,14 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
+from small_files import STUDY, write_small_study
 
 from tractionpower.cli import main
 from tractionpower.results.results import Results
 from tractionpower.results.store import RunWriter
 
 TABLES = {f"{name}.parquet" for name in ("substations", "feeders", "loads", "profile", "events")}
-STUDY = {
-    "study.yaml": 'format: 1\nname: Small\nclock: {start: "00:00:00", end: "00:01:00"}\n',
-    "line.yaml": 'format: 1\ntracks:\n  - {id: "1", from_km: 0.0, to_km: 20.0}\n',
-    "supply.yaml": (
-        "format: 1\n"
-        "substations:\n"
-        "  - {id: A, km: 0.0, no_load_voltage_v: 3600, internal_resistance_ohm: 0.12}\n"
-        "  - {id: Łódź, km: 20.0, no_load_voltage_v: 3600, internal_resistance_ohm: 0.12}\n"
-        "contact_lines:\n"
-        "  - {from_km: 0.0, to_km: 20.0, resistance_ohm_per_km: 0.05}\n"
-        "return_circuit:\n"
-        "  - {from_km: 0.0, to_km: 20.0, resistance_ohm_per_km: 0.01}\n"
-        "loads:\n"
-        '  - {id: train, track: "1", km: 10.0, power_kw: 3000, limits: none}\n'
-    ),
-}
+WRITTEN = TABLES | {"run.json", "key_figures.json", "scenario.json"}
 
 
 @pytest.fixture(autouse=True)
@@ -45,9 +31,7 @@ def working_folder(tmp_path, monkeypatch):
 @pytest.fixture
 def small(tmp_path):
     """Return the name of a small study in the working folder."""
-    (tmp_path / "small").mkdir()
-    for name, text in STUDY.items():
-        (tmp_path / "small" / name).write_text(text, encoding="utf-8")
+    write_small_study(tmp_path / "small")
     return "small"
 
 
@@ -70,17 +54,25 @@ def test_a_shipped_line_in_an_empty_folder(tmp_path, capsys):
     told = capsys.readouterr()
     folder = tmp_path / "reports" / "two-substations"
     assert [path.name for path in tmp_path.iterdir()] == ["reports"]
-    assert {path.name for path in folder.iterdir()} == TABLES | {"run.json", "key_figures.json", "figures"}
+    assert {path.name for path in folder.iterdir()} == WRITTEN | {"figures", "report.xlsx"}
     assert Results.open(folder).run["status"] == "complete"
     assert all(path.stat().st_size > 1000 for path in (folder / "figures").iterdir())
     for word in ("highest current [A]", "lowest voltage", "met", "electric ledger closes"):
         assert word in told.out
     assert f"results: {Path('reports') / 'two-substations'}" in told.err
+    assert f"report: {Path('reports') / 'two-substations' / 'report.xlsx'}" in told.err
 
 
 def test_no_reports_means_tables_only(tmp_path, small):
     assert run(small) == 0
-    assert {path.name for path in (tmp_path / "reports" / "small").iterdir()} == TABLES | {"run.json", "key_figures.json"}
+    assert {path.name for path in (tmp_path / "reports" / "small").iterdir()} == WRITTEN
+
+
+def test_an_earlier_workbook_that_is_not_written_again_is_told(small, capsys):
+    assert main(["run", small]) == 0
+    capsys.readouterr()
+    assert run(small) == 0
+    assert re.search(r"report\.xlsx is of an earlier run; `tractionpower report \S+` writes it again", capsys.readouterr().err)
 
 
 def test_tables_are_left_out_without_harm(tmp_path, small):
@@ -304,8 +296,11 @@ def test_ctrl_c_in_the_middle(tmp_path, small):
     assert (unfinished["status"], unfinished["steps"]) == ("interrupted", int(told[1]))
     parts = sorted(kept.glob("loads-*.parquet"))
     assert sum(pq.read_table(part).num_rows for part in parts) >= int(told[1]) > 0
-    for part in kept.glob("*.parquet"):
-        pq.read_table(part)
+    partial = Results.open(folder, partial=True)
+    assert partial.row_count("loads") == sum(pq.read_table(part).num_rows for part in parts)
+    assert partial.key_figure("energy_kwh", "substation A") > 0.0
+    assert partial.scenario.name == "Small"
+    assert f"tractionpower report {Path('reports') / 'small'} --partial" in err
 
     assert (folder / "run.json").read_bytes() == before  # and the earlier results still hold
     assert len(Results.open(folder).table("loads")) == 60

@@ -1,6 +1,7 @@
 """What is saved and loaded again is the same scenario with the same hash."""
 
 import tempfile
+from pathlib import Path
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -26,6 +27,8 @@ from tractionpower.model.scenario import Clock, Output, Scenario
 from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, SectionPoint, Substation, Supply
 from tractionpower.model.timetable import Call, Leg, Start, Timetable, TrainRun
 from tractionpower.model.vehicle import Adhesion, Auxiliaries, Brake, Part, Resistance, Train, Vehicle
+from tractionpower.results.results import Results
+from tractionpower.results.store import RunWriter
 
 
 def reals(low: float = -1e6, high: float = 1e6, **options) -> st.SearchStrategy[float]:
@@ -361,3 +364,15 @@ def test_load_of_save_is_the_same(scenario):
     assert loaded.scenario == scenario
     assert loaded.scenario.input_hash == scenario.input_hash
     assert loaded.problems == ()
+
+
+@settings(
+    derandomize=True, deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
+@given(SCENARIOS)
+def test_a_scenario_kept_with_results_is_the_same(scenario):
+    with tempfile.TemporaryDirectory() as folder:
+        RunWriter(Path(folder), "study", scenario.input_hash, scenario=scenario).finish({"study": "study"}, [])
+        kept = Results.open(folder).scenario
+    assert kept == scenario
+    assert kept.input_hash == scenario.input_hash

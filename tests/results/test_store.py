@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
+from small_studies import load, make_scenario
 
 from tractionpower.errors import OutputError, UsageError
 from tractionpower.results.results import Results
@@ -59,7 +60,7 @@ def test_columns_on_disk_carry_unit_and_meaning(folder, write_run):
 
 
 def test_a_file_does_not_depend_on_how_many_rows_came_at_a_time(folder, write_run, monkeypatch):
-    monkeypatch.setattr("tractionpower.results.store.GROUP_ROWS", 7)
+    monkeypatch.setattr("tractionpower.results.parts.GROUP_ROWS", 7)
     digests = {write_run(cuts=cuts)["files"]["loads.parquet"]["sha256"] for cuts in [(0, 20), (0, 1, 2, 9, 20), (0, 13, 20)]}
     assert len(digests) == 1
     assert pq.ParquetFile(folder / "loads.parquet").num_row_groups == 6
@@ -193,6 +194,114 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path, force):
     assert (tmp_path / "file").read_text(encoding="utf-8") == "x"
 
 
+# --- what was computed is kept with the results
+
+
+SCENARIO = make_scenario(load("żółw"), name="Small")
+
+
+def test_the_scenario_is_kept_and_its_file_has_the_input_hash(folder, rows):
+    writer = RunWriter(folder, "study", SCENARIO.input_hash, scenario=SCENARIO)
+    writer.append("loads", rows(0, 3))
+    run = writer.finish({"study": "study"}, [])
+    assert run["files"]["scenario.json"]["sha256"] == SCENARIO.input_hash
+    assert Results.open(folder).scenario == SCENARIO
+
+
+def test_results_without_a_scenario(folder, write_run):
+    write_run()
+    assert Results.open(folder).scenario is None
+
+
+def test_a_scenario_of_another_version_does_not_hinder_the_tables(folder, rows):
+    text = '{"line": "of the future"}'
+    folder.mkdir(parents=True)
+    (folder / "scenario.json").write_text(text, encoding="utf-8")
+    files = {"scenario.json": {"size": len(text), "sha256": hashlib.sha256(text.encode()).hexdigest()}}
+    (folder / "key_figures.json").write_text("[]", encoding="utf-8")
+    files["key_figures.json"] = {"size": 2, "sha256": hashlib.sha256(b"[]").hexdigest()}
+    (folder / "run.json").write_text(json.dumps({"study": "study", "files": files}), encoding="utf-8")
+    results = Results.open(folder)
+    assert results.tables == []
+    with pytest.raises(UsageError, match=r"scenario\.json: not a scenario of this version"):
+        _ = results.scenario
+
+
+# --- what a run that broke off has left
+
+
+def broken_off(folder, rows, key=HASH, **more):
+    writer = RunWriter(folder, "study", key, **more)
+    for first in (0, 3):
+        writer.append("loads", rows(first, first + 3))
+    return writer
+
+
+def test_parts_of_a_run_that_was_killed_are_read(folder, rows, write_run):
+    write_run()
+    broken_off(folder, rows, SCENARIO.input_hash, scenario=SCENARIO)
+    results = Results.open(folder, partial=True)
+    assert results.table("loads").equals(rows(0, 6).to_pandas())
+    assert results.row_count("loads") == 12
+    assert (results.run["status"], results.run["study"], results.run["name"]) == ("interrupted", "study", "Small")
+    assert results.scenario == SCENARIO
+    assert results.key_figures == []
+    assert Results.open(folder).row_count("loads") == 20  # the complete results are the earlier ones
+
+
+def test_what_an_interrupted_run_says_of_itself_is_read(folder, rows):
+    figure = {"name": "lowest_voltage_v", "value": 1.0, "place": ""}
+    broken_off(folder, rows).keep_unfinished({"status": "interrupted", "steps": 6}, [figure])
+    results = Results.open(folder, partial=True)
+    assert results.run == {"status": "interrupted", "steps": 6}
+    assert results.key_figure("lowest_voltage_v") == 1.0
+    assert results.scenario is None
+
+
+def test_half_written_and_joined_files_are_no_parts(folder, rows, monkeypatch):
+    writer = broken_off(folder, rows)
+    (writer.running / "loads-000003.tmp").write_bytes(b"half")
+    with monkeypatch.context() as patch:
+        patch.setattr("tractionpower.results.store.sha256_of", fail_with(errno.EIO))
+        with pytest.raises(OutputError):
+            writer.finish({}, [])
+    assert (writer.running / "loads.parquet").is_file()
+    assert Results.open(folder, partial=True).row_count("loads") == 12
+
+
+def test_parts_are_read_up_to_the_first_damaged_one(folder, rows):
+    writer = broken_off(folder, rows)
+    writer.append("loads", rows(6, 9))
+    (writer.running / "loads-000002.parquet").write_bytes(b"")
+    assert Results.open(folder, partial=True).table("loads").equals(rows(0, 3).to_pandas())
+
+
+def test_the_last_of_several_unfinished_runs_is_read(folder, rows):
+    for number, key in enumerate(("a" * 64, "c" * 64, "b" * 64)):
+        running = broken_off(folder, rows, key).running
+        os.utime(running, (1000.0 + number, 1000.0 + number))
+    assert Results.open(folder, partial=True).run["input_hash"] == "b" * 64
+
+
+def test_without_an_unfinished_run_there_is_nothing_partial(folder, write_run, rows):
+    write_run()
+    with pytest.raises(UsageError, match="no parts of an unfinished run are there"):
+        Results.open(folder, partial=True)
+
+
+def test_without_complete_results_the_partial_ones_are_named(folder, rows):
+    broken_off(folder, rows)
+    with pytest.raises(UsageError, match=r"no results of a run are there.*--partial"):
+        Results.open(folder)
+
+
+def test_reports_of_an_unfinished_run_are_no_foreign_matter(folder, rows, write_run):
+    broken_off(folder, rows)
+    (folder / "partial").mkdir()
+    write_run()
+    assert Results.open(folder).tables == ["loads"]
+
+
 # --- disks that fail
 
 
@@ -287,7 +396,7 @@ def test_ctrl_c_leaves_no_half_written_part(folder, rows, monkeypatch):
     monkeypatch.setattr(pq, "write_table", interrupt)
     with pytest.raises(KeyboardInterrupt):
         writer.append("loads", rows(3, 6))
-    assert [path.name for path in writer.running.iterdir()] == ["loads-000001.parquet"]
+    assert sorted(path.name for path in writer.running.iterdir()) == ["loads-000001.parquet", "run.json"]
 
 
 # --- files that another program holds open

@@ -68,7 +68,7 @@ def journey(  # noqa: PLR0917 - typer makes options of them
 ) -> None:
     """Run trains at a given voltage, without the network."""
     from tractionpower.cli.console import new_console, warn_of_compilation
-    from tractionpower.cli.messages import DONE, NOT_COMPLETED, tell
+    from tractionpower.cli.messages import DONE, NOT_COMPLETED, tell, tell_beside
     from tractionpower.io.scenario_files import load_scenario
     from tractionpower.model.change import apply_changes
     from tractionpower.studies.journeys import choose_runs, why_not_complete
@@ -96,8 +96,7 @@ def journey(  # noqa: PLR0917 - typer makes options of them
     if unwritten is not None:
         raise unwritten
     tell(f"results: {folder}")
-    for path in writer.beside:
-        tell(f"{path.name} was written beside a file that another program holds open")
+    tell_beside(writer.beside)
     raise typer.Exit(DONE if outcome.complete else NOT_COMPLETED)
 
 
@@ -117,7 +116,7 @@ def _compute(
     from tractionpower.studies.journeys import compute_journeys
 
     study = f"{loaded.folder.name}, journey"  # so that it never mixes with a run of the same study
-    writer = RunWriter(folder, study, scenario.input_hash, force=force)
+    writer = RunWriter(folder, study, scenario.input_hash, force=force, scenario=scenario)
     try:
         outcome = compute_journeys(scenario, writer, study, **options)
         tell_problems(loaded.provenance.place([*loaded.problems, *outcome.warnings]))

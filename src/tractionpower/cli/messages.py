@@ -15,6 +15,8 @@ import typer
 from tractionpower.errors import InputError, OutputError, Problem, UsageError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rich.console import Console
     from rich.text import Text
 
@@ -73,6 +75,15 @@ def tell(text: str) -> None:
         print(text, file=sys.stderr)
     except BrokenPipeError:
         close_quietly(sys.stderr)
+
+
+def tell_beside(paths: Iterable[Path]) -> None:
+    """Say of which of the files that were written another program holds the earlier one open."""
+    from tractionpower.results.disk import is_beside
+
+    for path in paths:
+        if is_beside(path):
+            tell(f"{path.name} was written beside a file that another program holds open")
 
 
 def tell_problems(problems: Iterable[Problem]) -> None:

@@ -24,15 +24,17 @@ def run(
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Change an input, e.g. supply.substations[A].state=bypassed."),
     ] = None,
-    no_reports: Annotated[bool, typer.Option("--no-reports", help="Write the tables only, no figures.")] = False,
+    no_reports: Annotated[bool, typer.Option("--no-reports", help="Write the tables only, no figures and no workbook.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace what is there, even results of another study.")] = False,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 4 when a limit is violated.")] = False,
 ) -> None:
     """Compute a study and write its results."""
     from tractionpower.cli.console import warn_of_compilation
-    from tractionpower.cli.messages import tell, tell_problems
+    from tractionpower.cli.messages import tell, tell_beside, tell_problems
+    from tractionpower.cli.report import tell_reports
     from tractionpower.io.scenario_files import load_scenario
     from tractionpower.model.change import apply_changes
+    from tractionpower.reporting.reports import WORKBOOK
 
     loaded = load_scenario(study)
     scenario = apply_changes(loaded.scenario, changes or [])
@@ -42,13 +44,15 @@ def run(
     prepared, writer = _prepare(loaded, scenario, folder, force)
     tell_problems(loaded.provenance.place([*loaded.problems, *prepared.warnings]))
     outcome = _execute(prepared, writer)
-    unwritten = None if no_reports else _write_reports(folder, scenario)
+    reports, unwritten = ([], None) if no_reports else _write_reports(folder, scenario)
     _show(outcome, prepared)
     if unwritten is not None:
         raise unwritten
     tell(f"results: {folder}")
-    for path in writer.beside:
-        tell(f"{path.name} was written beside a file that another program holds open")
+    tell_reports(reports)
+    if no_reports and (folder / WORKBOOK).exists():
+        tell(f"{folder / WORKBOOK} is of an earlier run; `tractionpower report {folder}` writes it again")
+    tell_beside(writer.beside)
     raise typer.Exit(_exit_code(outcome, strict))
 
 
@@ -58,7 +62,7 @@ def _prepare(loaded: LoadedScenario, scenario: Scenario, folder: Path, force: bo
     from tractionpower.results.store import RunWriter
 
     study = loaded.folder.name
-    writer = RunWriter(folder, study, scenario.input_hash, force=force)
+    writer = RunWriter(folder, study, scenario.input_hash, force=force, scenario=scenario)
     try:
         return Run(scenario, writer, study), writer
     except BaseException as error:
@@ -84,26 +88,24 @@ def _execute(prepared: Run, writer: RunWriter) -> Outcome:
             outcome = prepared.execute(lambda done, total: bar.update(task, completed=done, total=total))
         writer.finish(outcome.run, outcome.key_figures)
     except KeyboardInterrupt:
-        kept = writer.keep_unfinished(prepared.outcome().run)
+        unfinished = prepared.outcome()
+        kept = writer.keep_unfinished(unfinished.run, unfinished.key_figures)
         tell(f"interrupted after {prepared.done} of {prepared.steps} steps; what was computed is kept in {kept}")
+        tell(f"`tractionpower report {writer.folder} --partial` makes reports of it")
         raise
     return outcome
 
 
-def _write_reports(folder: Path, scenario: Scenario) -> OutputError | None:
-    """Write the figures; return what hinders that, so that the tables are printed first."""
+def _write_reports(folder: Path, scenario: Scenario) -> tuple[list[Path], OutputError | None]:
+    """Write the reports and return them, or what hinders that, so that the tables are printed first."""
     from tractionpower.errors import OutputError
-    from tractionpower.reporting.figures import write_figures
+    from tractionpower.reporting.reports import write_reports
     from tractionpower.results.results import Results
 
-    results = Results.open(folder)
-    if "profile" not in results.tables:  # left out with output.tables
-        return None
     try:
-        write_figures(results, scenario, folder / "figures")
-    except OSError as error:
-        return OutputError(f"the tables are complete, but figures cannot be written into {folder / 'figures'}: {error}")
-    return None
+        return write_reports(Results.open(folder), scenario, folder), None
+    except OutputError as error:
+        return [], error
 
 
 def _exit_code(outcome: Outcome, strict: bool) -> int:

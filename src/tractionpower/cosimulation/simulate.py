@@ -36,8 +36,8 @@ def simulate(
     if folder is None:
         memory = MemoryWriter()
         outcome = Run(scenario, memory, scenario.name).execute(progress)
-        return Results(outcome.run, outcome.key_figures, memory.tables())
-    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, force=force)
+        return Results(outcome.run, outcome.key_figures, memory.tables(), scenario)
+    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, force=force, scenario=scenario)
     try:
         run = Run(scenario, writer, scenario.name)
     except BaseException:
@@ -47,6 +47,7 @@ def simulate(
         outcome = run.execute(progress)
         writer.finish(outcome.run, outcome.key_figures)
     except KeyboardInterrupt:
-        writer.keep_unfinished(run.outcome().run)
+        unfinished = run.outcome()
+        writer.keep_unfinished(unfinished.run, unfinished.key_figures)
         raise
     return Results.open(folder)

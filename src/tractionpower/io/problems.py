@@ -158,6 +158,8 @@ def _tell_type(fault: _Fault) -> Told:
         remedy = f"write {fault.key}: [] for none, or leave {fault.key} out"
     elif kind == "text" and isinstance(fault.value, int | float):
         remedy = "put it in quotes"
+    elif kind in ("number", "integer", "boolean") and str(fault.value).startswith("="):
+        remedy = "formulas are not computed: write the value"
     elif kind in ("number", "integer") and isinstance(fault.value, str) and "," in fault.value:
         remedy = "write the decimals with a point"
     elif kind == "boolean" and str(fault.value).lower() in ("yes", "no", "y", "n", "on", "off", "0", "1"):

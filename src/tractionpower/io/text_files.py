@@ -89,7 +89,8 @@ def _refuse_by_status(source: Source, limit_mb: int) -> None:
         raise source.fail("not_a_file", "a device or a pipe", "a file")
     if status.st_size > limit_mb * MEGABYTE:
         size = status.st_size / MEGABYTE
-        raise source.fail("file_too_large", f"the file has {size:.1f} MB", f"at most {limit_mb} MB")
+        remedy = "is it the right file? results and measurements are no input"
+        raise source.fail("file_too_large", f"the file has {size:.1f} MB", f"at most {limit_mb} MB", remedy)
 
 
 def _decode(source: Source, raw: bytes) -> str:

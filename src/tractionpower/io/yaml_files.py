@@ -54,7 +54,8 @@ def read_yaml(source: Source) -> Document:
     """
     node = _compose(source, read_text(source, LIMIT_MB))
     if node is None:
-        raise source.fail("empty_file", "the file is empty", "keys and values")
+        remedy = "`tractionpower new DIR` writes a study to start from"
+        raise source.fail("empty_file", "the file is empty", "keys and values (key: value)", remedy)
     if not isinstance(node, MappingNode):
         found = shown(node.value) if isinstance(node, ScalarNode) else "a list"
         raise source.fail("not_a_mapping", f"the file holds {found}", "keys and values (key: value)", line=_line(node))
@@ -92,7 +93,8 @@ def _compose(source: Source, text: str) -> Node | None:
         raise _syntax_error(source, text, error) from None
     except ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
-        raise source.fail("syntax_error", f"a character that YAML forbids: {shown(text[error.position])}", line=line) from None
+        found = f"a character that YAML forbids: {shown(text[error.position])}"
+        raise source.fail("syntax_error", found, "text", "is it the right file? save it as plain text", line) from None
     except RecursionError:
         raise source.fail("too_deep", "the file is nested too deeply", f"at most {DEEPEST} levels") from None
     except (YAMLError, ValueError, AttributeError, TypeError) as error:  # ruamel lets some malformed texts through to Python
@@ -157,7 +159,7 @@ class _Builder:
         self._seen.add(id(node))
         if self._from_aliases > MOST_ALIAS_NODES:
             found = f"aliases (*name) add more than {MOST_ALIAS_NODES} values"
-            raise self._source.fail("alias", found, "write the values out", line=line)
+            raise self._source.fail("alias", found, f"at most {MOST_ALIAS_NODES}", "write the values out", line)
 
     def _sequence(self, node: Node, loc: Loc, mark: Mark) -> list[Any]:
         items = []

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +14,20 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tractionpower.errors import UsageError
-from tractionpower.results.store import KEY_FIGURES_FILE, read_run, table_names, written_as
+from tractionpower.model.scenario import Scenario
+from tractionpower.results.disk import read_json
+from tractionpower.results.parts import count_rows, read_groups, read_joined
+from tractionpower.results.store import (
+    KEY_FIGURES_FILE,
+    RUN_FILE,
+    SCENARIO_FILE,
+    find_unfinished,
+    parts_of,
+    read_run,
+    read_scenario_file,
+    table_names,
+    written_as,
+)
 
 
 @dataclass(frozen=True)
@@ -29,31 +44,45 @@ class Results:
 
     run: dict[str, Any]
     key_figures: list[dict[str, Any]]
-    _source: dict[str, pa.Table] | Path
+    _source: Mapping[str, pa.Table | Sequence[Path]]
+    _scenario: Scenario | Path | None = None
 
     def __repr__(self) -> str:
         rows = ", ".join(f"{name} ({self._row_count(name)} rows)" for name in self.tables)
         return f"<Results of study {self.run.get('study', '')!r}, {self.run.get('status', 'unknown')}; tables: {rows or 'none'}>"
 
     @classmethod
-    def open(cls, folder: str | Path) -> Results:
+    def open(cls, folder: str | Path, *, partial: bool = False) -> Results:
         """Open a folder that a run has written.
+
+        Parameters
+        ----------
+        folder
+            The folder.
+        partial
+            Read what a run that was interrupted has left there, instead of complete results.
 
         Raises
         ------
         UsageError
             If no valid results are there.
         """
-        path = Path(folder)
-        run = read_run(path)
-        figures = json.loads((path / written_as(run, KEY_FIGURES_FILE)).read_text(encoding="utf-8"))
-        return cls(run, figures, path)
+        return _open_unfinished(Path(folder)) if partial else _open_complete(Path(folder))
+
+    @cached_property
+    def scenario(self) -> Scenario | None:
+        """What was computed; None if it was not kept with the results.
+
+        Raises
+        ------
+        UsageError
+            If it was kept, but this version does not understand it.
+        """
+        return read_scenario_file(self._scenario) if isinstance(self._scenario, Path) else self._scenario
 
     @property
     def tables(self) -> list[str]:
         """Names of the tables."""
-        if isinstance(self._source, Path):
-            return table_names(self.run)
         return sorted(self._source)
 
     def table(self, name: str) -> pd.DataFrame:
@@ -64,18 +93,54 @@ class Results:
         UsageError
             If the run has no such table.
         """
-        if name not in self.tables:
-            raise UsageError(f"no table {name!r}; this run has {', '.join(self.tables)}")
-        source = self._source
-        table = source[name] if isinstance(source, dict) else pq.read_table(source / written_as(self.run, f"{name}.parquet"))
-        frame: pd.DataFrame = table.to_pandas()
+        source = self._source_of(name)
+        frame: pd.DataFrame = (source if isinstance(source, pa.Table) else read_joined(source)).to_pandas()
         return frame
 
+    def batches(self, name: str) -> Iterator[pa.Table]:
+        """Yield the rows of a table as Arrow tables, as many at a time as are well in memory.
+
+        Raises
+        ------
+        UsageError
+            If the run has no such table.
+        """
+        source = self._source_of(name)
+        if isinstance(source, pa.Table):
+            yield source.unify_dictionaries()
+        else:
+            yield from read_groups(source)
+
+    def schema(self, name: str) -> pa.Schema:
+        """Return the Arrow schema of a table, with unit and meaning of each column.
+
+        Raises
+        ------
+        UsageError
+            If the run has no such table.
+        """
+        source = self._source_of(name)
+        return source.schema if isinstance(source, pa.Table) else pq.read_schema(source[0])
+
+    def row_count(self, name: str) -> int:
+        """Return the number of rows of a table.
+
+        Raises
+        ------
+        UsageError
+            If the run has no such table.
+        """
+        source = self._source_of(name)
+        return int(source.num_rows) if isinstance(source, pa.Table) else count_rows(source)
+
+    def _source_of(self, name: str) -> pa.Table | Sequence[Path]:
+        if name not in self._source:
+            raise UsageError(f"no table {name!r}; this run has {', '.join(self.tables)}")
+        return self._source[name]
+
     def _row_count(self, name: str) -> int | str:
-        if isinstance(self._source, dict):
-            return int(self._source[name].num_rows)
         try:
-            return int(pq.read_metadata(self._source / written_as(self.run, f"{name}.parquet")).num_rows)
+            return self.row_count(name)
         except (OSError, pa.ArrowInvalid):  # gone since it was opened
             return "?"
 
@@ -92,3 +157,26 @@ class Results:
             known = ", ".join(sorted({f["name"] for f in self.key_figures}))
             raise UsageError(f"{len(found)} key figures {name!r} {place!r}; this run has {known}")
         return float(found[0]["value"])
+
+
+def _open_complete(folder: Path) -> Results:
+    run = read_run(folder)
+    tables = {name: [folder / written_as(run, f"{name}.parquet")] for name in table_names(run)}
+    scenario = folder / written_as(run, SCENARIO_FILE)
+    return Results(
+        run,
+        json.loads((folder / written_as(run, KEY_FIGURES_FILE)).read_text(encoding="utf-8")),
+        tables,
+        scenario if scenario.name in run["files"] else None,
+    )
+
+
+def _open_unfinished(folder: Path) -> Results:
+    running = find_unfinished(folder)
+    figures, scenario = running / KEY_FIGURES_FILE, running / SCENARIO_FILE
+    return Results(
+        read_json(running / RUN_FILE) or {},
+        json.loads(figures.read_text(encoding="utf-8")) if figures.is_file() else [],
+        parts_of(running),
+        scenario if scenario.is_file() else None,
+    )

@@ -6,33 +6,42 @@ touched before the new results are complete.
 
 from __future__ import annotations
 
-import errno
-import hashlib
+import itertools
 import json
-import os
+import re
 import shutil
-import signal
-import threading
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
-from tractionpower.errors import OutputError, UsageError
+from tractionpower.errors import UsageError
+from tractionpower.model.scenario import Scenario
 from tractionpower.results.columns import TABLES
-from tractionpower.results.tables import schema_of
+from tractionpower.results.disk import (
+    BESIDE,
+    beside,
+    failures_told,
+    move_in,
+    read_json,
+    sha256_of,
+    uninterrupted,
+    write_json,
+    write_text,
+    write_whole,
+)
+from tractionpower.results.parts import is_readable, join_parts, write_part
 
 RUN_FILE = "run.json"
 KEY_FIGURES_FILE = "key_figures.json"
+SCENARIO_FILE = "scenario.json"
 RUNNING = ".running"
-GROUP_ROWS = 1_000_000
-"""Rows of a row group in a file."""
+PARTIAL = "partial"
+"""Folder of the reports of an unfinished run."""
 
-BESIDE = ".new"
-"""Before the suffix of a file that was written beside one that another program holds open."""
+_PART = re.compile(r"(\w+)-(\d+)\.parquet")
 
 
 class RunWriter:
@@ -48,6 +57,8 @@ class RunWriter:
         Hash of the scenario, which names the folder of the parts.
     force
         Write even where results of another study, or other files, are.
+    scenario
+        What is computed; kept with the results, from the beginning on, so that reports can be made of them later.
 
     Raises
     ------
@@ -57,28 +68,40 @@ class RunWriter:
         If it cannot be written.
     """
 
-    def __init__(self, folder: Path, study: str, input_hash: str, *, force: bool = False) -> None:
+    def __init__(
+        self, folder: Path, study: str, input_hash: str, *, force: bool = False, scenario: Scenario | None = None
+    ) -> None:
         self.folder, self.study = folder, study
         self.beside: list[Path] = []
         self.held: list[Path] = []
+        self._scenario = scenario
         self._count = 0
         self._parts: dict[str, list[Path]] = {}
         self.running = folder / RUNNING / input_hash[:16]
-        with _told(folder):
+        with failures_told(folder):
             _refuse_foreign(folder, study, force=force)
             self._made = [path for path in (folder, *folder.parents) if not path.exists()]
             shutil.rmtree(self.running, ignore_errors=True)
             self.running.mkdir(parents=True)
+            self._begin(input_hash)
+
+    def _begin(self, input_hash: str) -> None:
+        """Note what the parts are going to be, for the case that nobody is left to say it at the end."""
+        note: dict[str, Any] = {"format": 1, "status": "interrupted", "study": self.study, "input_hash": input_hash}
+        if self._scenario is not None:
+            write_text(self.running / SCENARIO_FILE, _canonical_json(self._scenario))
+            note |= {"name": self._scenario.name, "seed": self._scenario.seed, "verdicts": [], "ledgers": {}}
+        write_json(self.running / RUN_FILE, note)
 
     def append(self, table: str, rows: pa.Table) -> None:
-        """Write `rows` of `table` as a complete part."""
+        """Write `rows` of `table` as a complete part; the names that texts are coded by should be the same in all of them."""
         self._count += 1
         path = self.running / f"{table}-{self._count:06d}.parquet"
-        with _told(self.folder):
-            _write(path, lambda temporary: pq.write_table(rows, temporary, compression="zstd"))
+        with failures_told(self.folder):
+            write_whole(path, lambda temporary: write_part(rows, temporary))
         self._parts.setdefault(table, []).append(path)
 
-    def finish(self, run: dict[str, Any], key_figures: list[dict[str, Any]]) -> dict[str, Any]:
+    def finish(self, run: dict[str, Any], key_figures: Sequence[dict[str, Any]]) -> dict[str, Any]:
         """Join the parts, move everything in, write ``run.json`` last.
 
         Returns
@@ -86,14 +109,16 @@ class RunWriter:
         dict
             What ``run.json`` holds: `run` with the files.
         """
-        with _told(self.folder):
+        with failures_told(self.folder):
             files = [self._join(table) for table in TABLES if table in self._parts]
-            files.append(_write_json(self.running / KEY_FIGURES_FILE, key_figures))
-            entries = [{"size": file.stat().st_size, "sha256": _sha256(file)} for file in files]
+            files.append(write_json(self.running / KEY_FIGURES_FILE, key_figures))
+            if self._scenario is not None:
+                files.append(self.running / SCENARIO_FILE)
+            entries = [{"size": file.stat().st_size, "sha256": sha256_of(file)} for file in files]
             earlier = _earlier_files(self.folder)
-        with _uninterrupted(), _told(self.folder, "Some files there are new and some old; mend that and run again"):
+        with uninterrupted(), failures_told(self.folder, "Some files there are new and some old; mend that and run again"):
             complete = run | {"files": {self._move_in(file): entry for file, entry in zip(files, entries, strict=True)}}
-            last = self._move_in(_write_json(self.running / RUN_FILE, complete))
+            last = self._move_in(write_json(self.running / RUN_FILE, complete))
             for stale in earlier - {*complete["files"], last, *(path.name for path in self.held)}:
                 with suppress(OSError):  # not named by run.json, so no part of the results
                     (self.folder / stale).unlink()
@@ -107,32 +132,23 @@ class RunWriter:
             if folder.is_dir() and not any(folder.iterdir()):
                 folder.rmdir()
 
-    def keep_unfinished(self, run: dict[str, Any]) -> Path:
+    def keep_unfinished(self, run: dict[str, Any], key_figures: Sequence[dict[str, Any]] = ()) -> Path:
         """Leave the parts where they are, with a note of what they are; return their folder."""
-        with _told(self.folder):
-            _write_json(self.running / RUN_FILE, run)
+        with failures_told(self.folder):
+            write_json(self.running / KEY_FIGURES_FILE, key_figures)
+            write_json(self.running / RUN_FILE, run)
         return self.running
 
     def _join(self, table: str) -> Path:
-        schema = schema_of(table)
-
-        def write(temporary: Path) -> None:
-            with pq.ParquetWriter(temporary, schema, compression="zstd") as writer:
-                for group in _regroup(pq.read_table(part).cast(schema) for part in self._parts[table]):
-                    writer.write_table(group)
-
-        return _write(self.running / f"{table}.parquet", write)
+        return write_whole(self.running / f"{table}.parquet", lambda temporary: join_parts(table, self._parts[table], temporary))
 
     def _move_in(self, file: Path) -> str:
-        target = self.folder / file.name
-        try:
-            file.replace(target)
-        except PermissionError:  # Windows: another program holds the file that would be replaced
-            self.held.append(target)
-            target = _beside(target)
-            file.replace(target)
-            self.beside.append(target)
-        return target.name
+        wanted = self.folder / file.name
+        written = move_in(file, wanted)
+        if written != wanted:
+            self.held.append(wanted)
+            self.beside.append(written)
+        return written.name
 
 
 class MemoryWriter:
@@ -160,20 +176,21 @@ def read_run(folder: Path) -> dict[str, Any]:
     """
     path = _run_file(folder)
     if not path.is_file():
-        raise UsageError(f"{folder}: no results of a run are there ({RUN_FILE} is missing)")
-    run = _read_json(path)
+        partly = "; what an interrupted run has computed is read with --partial" if (folder / RUNNING).is_dir() else ""
+        raise UsageError(f"{folder}: no results of a run are there ({RUN_FILE} is missing){partly}")
+    run = read_json(path)
     if run is None or not isinstance(run.get("files"), dict):
         raise UsageError(f"{path}: not what a complete run writes; run the study again")
     for name, entry in run["files"].items():
         file = folder / name
-        if not file.is_file() or file.stat().st_size != entry["size"] or _sha256(file) != entry["sha256"]:
+        if not file.is_file() or file.stat().st_size != entry["size"] or sha256_of(file) != entry["sha256"]:
             raise UsageError(f"{file}: not the file that the run wrote; run the study again")
     return run
 
 
 def written_as(run: dict[str, Any], name: str) -> str:
     """Return under which name the run of ``run.json`` wrote the file `name`."""
-    return name if name in run["files"] else _beside(Path(name)).name
+    return name if name in run["files"] else beside(Path(name)).name
 
 
 def table_names(run: dict[str, Any]) -> list[str]:
@@ -182,66 +199,60 @@ def table_names(run: dict[str, Any]) -> list[str]:
     return sorted(name.removesuffix(".parquet").removesuffix(BESIDE) for name in files)
 
 
-def _regroup(parts: Iterable[pa.Table]) -> Iterator[pa.Table]:
-    """Yield all rows in groups of one size, so that a file does not depend on how many came at a time."""
-    waiting = None
-    for part in parts:
-        waiting = part if waiting is None else pa.concat_tables([waiting, part])
-        while waiting.num_rows > GROUP_ROWS:
-            yield _one_piece(waiting.slice(0, GROUP_ROWS))
-            waiting = waiting.slice(GROUP_ROWS)
-    if waiting is not None:
-        yield _one_piece(waiting)
+def find_unfinished(folder: Path) -> Path:
+    """Return the folder of the parts that the last unfinished run has left in a folder of results.
+
+    Raises
+    ------
+    UsageError
+        If there are none.
+    """
+    found = [path for path in (folder / RUNNING).glob("*") if (path / RUN_FILE).is_file()]
+    if not found:
+        raise UsageError(f"{folder}: no parts of an unfinished run are there; without --partial complete results are read")
+    return max(found, key=lambda path: (path.stat().st_mtime, path.name))
 
 
-def _one_piece(rows: pa.Table) -> pa.Table:
-    return rows.unify_dictionaries().combine_chunks()
+def parts_of(running: Path) -> dict[str, list[Path]]:
+    """Return the complete parts of an unfinished run by table, in their order, up to the first that is damaged."""
+    numbered = [(int(match[2]), match[1], path) for path in running.iterdir() if (match := _PART.fullmatch(path.name))]
+    tables: dict[str, list[Path]] = {}
+    for _, table, path in itertools.takewhile(lambda part: is_readable(part[2]), sorted(numbered)):
+        tables.setdefault(table, []).append(path)
+    return tables
 
 
-def _beside(path: Path) -> Path:
-    return path.with_name(f"{path.stem}{BESIDE}{path.suffix}")
+def read_scenario_file(path: Path) -> Scenario:
+    """Return the scenario that was kept with results.
+
+    Raises
+    ------
+    UsageError
+        If this version does not understand it.
+    """
+    try:
+        return Scenario.model_validate_json(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:  # also what pydantic raises
+        raise UsageError(f"{path}: not a scenario of this version of tractionpower; run the study again") from error
+
+
+def _canonical_json(scenario: Scenario) -> str:
+    # The text whose SHA-256 is the input hash of the scenario.
+    return json.dumps(scenario.model_dump(mode="json", by_alias=True), sort_keys=True, separators=(",", ":"), ensure_ascii=False)
 
 
 def _run_file(folder: Path) -> Path:
     """Return the file that says what a run was; one written beside is the newer one."""
     path = folder / RUN_FILE
-    return _beside(path) if _beside(path).is_file() else path
-
-
-def _read_json(path: Path) -> dict[str, Any] | None:
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError:
-        return None
-    return content if isinstance(content, dict) else None
+    return beside(path) if beside(path).is_file() else path
 
 
 def _earlier_files(folder: Path) -> set[str]:
     """Return the names of the files of an earlier run, those written beside included."""
     path = _run_file(folder)
-    run = (_read_json(path) if path.is_file() else None) or {}
+    run = (read_json(path) if path.is_file() else None) or {}
     names = run.get("files", {})
     return {path.name, *(name for name in names if Path(name).name == name)}
-
-
-def _write(path: Path, write: Callable[[Path], None]) -> Path:
-    """Let `write` fill a file that gets its name when it is complete."""
-    temporary = path.with_suffix(".tmp")
-    try:
-        write(temporary)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-    return path
-
-
-def _write_json(path: Path, content: Any) -> Path:
-    text = json.dumps(content, indent=1, ensure_ascii=False)
-    return _write(path, lambda temporary: _write_text(temporary, text))
-
-
-def _write_text(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
 
 
 def _refuse_foreign(folder: Path, study: str, *, force: bool) -> None:
@@ -253,47 +264,14 @@ def _refuse_foreign(folder: Path, study: str, *, force: bool) -> None:
         return
     path = _run_file(folder)
     if path.is_file():
-        run = _read_json(path)
+        run = read_json(path)
         owner = "an unreadable run" if run is None else run.get("study")
         if owner != study:
             raise UsageError(f"{folder} holds results of another study ({owner!r}, not {study!r}); choose --out, or --force")
-    elif not all(entry.name == RUNNING or _holds_results(entry) for entry in folder.iterdir()):
+    elif not all(entry.name in (RUNNING, PARTIAL) or _holds_results(entry) for entry in folder.iterdir()):
         raise UsageError(f"{folder} holds files that are no results of a run; choose another --out, or --force")
 
 
 def _holds_results(entry: Path) -> bool:
     """Return whether something in a folder is a folder of results itself: `journey` writes beside what `run` writes."""
     return (entry / RUNNING).is_dir() or _run_file(entry).is_file()
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-@contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Put Ctrl-C off for the moment in which results move in; then it comes too late to stop anything."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-@contextmanager
-def _told(folder: Path, harm: str = "Earlier results there are unharmed") -> Iterator[None]:
-    """Turn what the operating system says into a message that helps."""
-    try:
-        yield
-    except OSError as error:
-        if error.errno in (errno.ENOSPC, errno.EDQUOT if hasattr(errno, "EDQUOT") else errno.ENOSPC):
-            reason = "the disk is full; make room and run again"
-        elif error.errno in (errno.EACCES, errno.EPERM, errno.EROFS):
-            reason = "no permission to write; choose another folder with --out"
-        else:
-            reason = os.strerror(error.errno) if error.errno else str(error)
-        raise OutputError(f"results cannot be written into {folder}: {reason}. {harm}") from error

@@ -163,7 +163,7 @@ def journeys(
     """
     writer = MemoryWriter()
     outcome = compute_journeys(scenario, writer, voltage_v=voltage_v, step_s=step_s, form=form, runs=runs)
-    return Results(outcome.run, outcome.key_figures, writer.tables())
+    return Results(outcome.run, outcome.key_figures, writer.tables(), scenario)
 
 
 def _check_options(voltage_v: Any, step_s: Any, form: Any) -> None:

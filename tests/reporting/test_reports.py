@@ -1,0 +1,76 @@
+"""All reports of a run together: one that fails does not hinder the others."""
+
+import errno
+import os
+
+import pytest
+from small_studies import load, make_scenario
+
+from tractionpower.errors import OutputError
+from tractionpower.reporting.reports import write_reports
+from tractionpower.results.results import Results
+
+SCENARIO = make_scenario(load("x"))
+
+
+def fail_with(number):
+    def fail(results, scenario, path):
+        raise OSError(number, os.strerror(number))
+
+    return fail
+
+
+def write_file(results, scenario, path):
+    path.write_bytes(b"report")
+    return path
+
+
+def write_folder(results, scenario, path):
+    path.mkdir(exist_ok=True)
+    return [write_file(results, scenario, path / "figure.png")]
+
+
+@pytest.fixture
+def writers(monkeypatch):
+    """Return a function that puts other writers of figures and workbook into their places."""
+
+    def put(figures=write_folder, workbook=write_file):
+        monkeypatch.setattr("tractionpower.reporting.figures.write_figures", figures)
+        monkeypatch.setattr("tractionpower.reporting.workbook.write_workbook", workbook)
+
+    return put
+
+
+def test_figures_and_workbook_are_written(tmp_path, writers):
+    writers()
+    folder = tmp_path / "new" / "folder"
+    paths = write_reports(Results({}, [], {}), SCENARIO, folder)
+    assert paths == [folder / "figures" / "figure.png", folder / "report.xlsx"]
+    assert all(path.is_file() for path in paths)
+
+
+@pytest.mark.parametrize(
+    ("failing", "words", "left"),
+    [
+        ({"figures": fail_with(errno.ENOSPC)}, ["figures cannot be written", "the disk is full"], {"report.xlsx"}),
+        ({"workbook": fail_with(errno.EACCES)}, ["report.xlsx cannot be written", "no permission"], {"figures"}),
+        (
+            {"figures": fail_with(errno.ENOSPC), "workbook": fail_with(errno.EIO)},
+            ["figures cannot be written", "report.xlsx cannot be written", "the tables are complete"],
+            set(),
+        ),
+    ],
+)
+def test_one_that_fails_does_not_hinder_the_others(tmp_path, writers, failing, words, left):
+    writers(**failing)
+    with pytest.raises(OutputError) as told:
+        write_reports(Results({}, [], {}), SCENARIO, tmp_path)
+    assert all(word in str(told.value) for word in words)
+    assert {path.name for path in tmp_path.iterdir()} == left
+
+
+def test_a_folder_that_cannot_be_made(tmp_path, writers):
+    writers()
+    (tmp_path / "file").write_text("in the way", encoding="utf-8")
+    with pytest.raises(OutputError, match="cannot be written"):
+        write_reports(Results({}, [], {}), SCENARIO, tmp_path / "file")
