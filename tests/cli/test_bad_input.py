@@ -143,7 +143,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("change, place, words".split(", "), BAD.values(), ids=BAD)
-@pytest.mark.parametrize("command", ["check", "journey"])
+@pytest.mark.parametrize("command", ["check", "run"])
 def test_bad_inputs_are_told_once_with_what_helps(study, tmp_path, capsys, command, change, place, words):
     change(study)
     assert main([command, "study"]) == 1

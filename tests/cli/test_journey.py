@@ -10,6 +10,7 @@ from train_study import FILES, write_train_study
 
 from tractionpower.cli import journey as command
 from tractionpower.cli import main
+from tractionpower.cosimulation.calls import call_rows
 from tractionpower.results.results import Results
 from tractionpower.studies import journeys as studies
 
@@ -138,7 +139,8 @@ def test_of_many_trains_the_first_twelve_or_those_named_get_figures(monkeypatch,
     names = [f"T{k:02d}" for k in range(14)]
     made = tuple(make_journey(line, name, start_s=21600.0 + 60.0 * k) for k, name in enumerate(names))
     said = {"status": "complete", "ledgers": {}}
-    outcome = studies.JourneyOutcome(made, 3000.0, {each.run.id: [] for each in made}, run=said)
+    calls = {each.run.id: call_rows(each.run.id, each.calls, studies.route_end(each)) for each in made}
+    outcome = studies.JourneyOutcome(made, 3000.0, calls, run=said)
     drawn = []
 
     def compute(*arguments, **options):

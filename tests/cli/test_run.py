@@ -220,7 +220,7 @@ def test_a_demand_that_cannot_be_served(tmp_path, small, capsys):
     assert "60 steps are flagged" in told.out
     results = Results.open(tmp_path / "reports" / "small")
     assert results.run["status"] == "flagged"
-    assert len(results.table("events")) == 1
+    assert results.table("events")["kind"].tolist() == ["limit_violated", "not_servable"]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/proc is read-only on Linux")
@@ -312,7 +312,7 @@ def test_ctrl_c_before_the_first_step_leaves_nothing(tmp_path, small, capsys, mo
     def interrupt(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tractionpower.cosimulation.run.compile_network", interrupt)
+    monkeypatch.setattr("tractionpower.cosimulation.run.compile_scenario", interrupt)
     assert run(small) == 3
     assert "interrupted" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["small"]
