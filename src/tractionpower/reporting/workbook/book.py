@@ -25,8 +25,8 @@ from tractionpower.reporting.workbook import (
 from tractionpower.reporting.workbook.cells import shorten
 from tractionpower.reporting.workbook.facts import Facts
 from tractionpower.reporting.workbook.page import Book
+from tractionpower.results.disk import BESIDE
 from tractionpower.results.results import Results
-from tractionpower.results.store import BESIDE
 
 TITLE_LENGTH = 200
 """Characters of the title in the properties of the document."""
