@@ -46,7 +46,7 @@ def test_load_change_check_simulate_save(tmp_path):
         pd.testing.assert_frame_equal(memory.table(name), disk.table(name))
     assert memory.key_figures == disk.key_figures
     assert memory.run["input_hash"] == disk.run["input_hash"] == changed.input_hash
-    pd.testing.assert_frame_equal(tp.Results.open(tmp_path / "out").table("loads"), disk.table("loads"))
+    pd.testing.assert_frame_equal(tp.Results.open(tmp_path / "out").table("trains"), disk.table("trains"))
     assert memory.key_figure("lowest_voltage_v") > 2000.0
 
 

@@ -54,7 +54,7 @@ def test_every_step_balances_and_its_ledger_closes(mixed):
     assert np.abs(gap).max() <= (1e-9 * steps["gross_w"] + 1e-3).max()
     power = np.zeros(len(steps))
     np.add.at(power, np.repeat(np.arange(len(steps)), steps["trains"]), mixed.trains["voltage_v"] * mixed.trains["current_a"])
-    np.testing.assert_allclose(power, steps["train_w"], rtol=1e-12, atol=1e-6)
+    np.testing.assert_allclose(power, steps["train_w"], rtol=1e-8, atol=0.01)  # microamperes at 3 kV
 
 
 def test_the_current_of_each_row_is_what_the_demand_says_at_its_voltage():

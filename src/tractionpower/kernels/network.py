@@ -15,12 +15,8 @@ from tractionpower.kernels.ports import find_segment, linearise, port_current, p
 from tractionpower.kernels.skeleton import factor_and_solve
 from tractionpower.kernels.spans import condense, expand
 
-TOLERANCE_A = 1e-7
-"""A solution is accepted when every port balances within this current, and so every node but the reference [A]. Tenfold at
-3 kV and some hundred ports would be more than the electric ledger of a step allows."""
-
-SERVED_A = 2e-6
-"""A cut demand counts as served within this current; just beyond the fold the imbalance is small, too [A]."""
+TOLERANCE_A = 1e-6
+"""A solution is accepted when every port balances within this current, and so every node but the reference [A]."""
 
 FLAG_A = 1e-3
 """A step with a larger imbalance is flagged [A]."""
@@ -303,7 +299,7 @@ def solve(network, work, warm):
         _cut_demand(network, work, middle)
         more, worst = solve_cold(network, work)
         iterations += more
-        if worst <= SERVED_A and find_unserved(network, work) < 0:
+        if worst <= 2.0 * TOLERANCE_A and find_unserved(network, work) < 0:  # just beyond the fold it is small, too
             low = middle
         else:
             high = middle

@@ -19,10 +19,12 @@ from tractionpower.errors import UsageError
 from tractionpower.results.disk import failures_told, write_or_beside
 from tractionpower.results.netcdf import check_netcdf, write_netcdf
 from tractionpower.results.results import Results
-from tractionpower.results.sheets import MOST_ROWS, Sheet, write_sheets
 
 BOOK = "tables.xlsx"
 """File of the workbook."""
+
+MOST_ROWS = 1_048_576
+"""Rows of a sheet, the heading included; a limit of Excel."""
 
 
 def export_tables(results: Results, folder: Path, formats: Sequence[str], tables: Sequence[str] | None = None) -> list[Path]:
@@ -101,6 +103,8 @@ def _plain(batch: pa.Table) -> pa.Table:
 
 
 def _write_book(results: Results, folder: Path, tables: Sequence[str]) -> Iterator[Path]:
+    from tractionpower.results.sheets import Sheet, write_sheets  # noqa: PLC0415 - openpyxl is needed for Excel only
+
     sheets = [Sheet(name, results.schema(name).names, results.batches(name)) for name in tables]
     yield write_or_beside(folder / BOOK, lambda path: write_sheets(path, sheets))
 
