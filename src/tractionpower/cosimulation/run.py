@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -24,7 +25,7 @@ BLOCK_S = 0.25
 """Wall time that a block of steps aims at, so that progress and Ctrl-C live [s]."""
 
 FIRST_BLOCK = 16
-BUFFER_BYTES = 32_000_000
+BUFFER_BYTES = 16_000_000
 
 Progress = Callable[[int, int], None]
 """Called with the steps done and the steps in all."""
@@ -98,18 +99,25 @@ class Run:
 
         After an interruption `outcome` still tells what was done; rows computed so far are with the writer.
         """
-        tables, buffers = self.compiled.block, self._new_buffers()
         started, block = time.perf_counter(), FIRST_BLOCK
-        while self.done < self.steps:
-            block_started = time.perf_counter()
-            rows, _ = advance(tables, self.state, buffers, min(self.done + block, self.steps))
-            pace = (time.perf_counter() - block_started) / max(rows, 1)
-            self.recorder.add(self.done, rows, buffers)
-            self.done += rows
-            block = max(FIRST_BLOCK, int(BLOCK_S / max(pace, 1e-9))) if self.done > FIRST_BLOCK else FIRST_BLOCK
-            self.wall_seconds = time.perf_counter() - started
-            if progress is not None:
-                progress(self.done, self.steps)
+        tables, buffers, spare = self.compiled.block, self._new_buffers(), self._new_buffers()
+        with ThreadPoolExecutor(1) as recording:  # the block holds no lock: rows are recorded while the next ones are computed
+            pending: Future[None] | None = None
+            while self.done < self.steps:
+                block_started = time.perf_counter()
+                rows, _ = advance(tables, self.state, buffers, min(self.done + block, self.steps))
+                pace = (time.perf_counter() - block_started) / max(rows, 1)
+                if pending is not None:
+                    pending.result()
+                pending = recording.submit(self.recorder.add, self.done, rows, buffers)
+                buffers, spare = spare, buffers
+                self.done += rows
+                block = max(FIRST_BLOCK, int(BLOCK_S / max(pace, 1e-9))) if self.done > FIRST_BLOCK else FIRST_BLOCK
+                self.wall_seconds = time.perf_counter() - started
+                if progress is not None:
+                    progress(self.done, self.steps)
+            if pending is not None:
+                pending.result()
         self.recorder.close()
         return self.outcome()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from tractionpower.results.spells import TOLERANCE_V
 
 Row = dict[str, Any]
 Rows = NDArray[np.void]
+Columns = dict[str, NDArray[Any]]
 
 LIMITS = (BY_LINE_CURRENT, BY_TRAIN_CURRENT, BY_VOLTAGE)
 
@@ -36,54 +38,54 @@ class TrainEvents:
     def __init__(self, names: tuple[str, ...], places: Places, voltages: SystemVoltages, step_s: float) -> None:
         self._names, self._places, self._voltages, self._step_s = names, places, voltages, step_s
         self.rows: list[Row] = []
-        self._open: dict[tuple[str, int], Row] = {}
+        self._open: defaultdict[str, dict[int, Row]] = defaultdict(dict)
         self._grouping: dict[int, int] = {}
 
     def add(self, rows: Rows) -> None:
         """Look at rows of trains, ordered by time."""
         order = np.argsort(rows["train"], kind="stable")
-        for mine in np.split(order, np.flatnonzero(np.diff(rows["train"][order])) + 1):
-            if len(mine):
-                self._look_at(int(rows["train"][mine[0]]), rows[mine])
+        names = ("train", "time_s", "s_m", "voltage_v", "limited_by", "traction_n", "wished_n", "grouping")
+        columns = {name: rows[name][order] for name in names}
+        volts, low, high = columns["voltage_v"], self._voltages.u_min2, self._voltages.u_max2
+        limited = np.isin(columns["limited_by"], LIMITS) & (columns["traction_n"] < columns["wished_n"])
+        self._spells("low_voltage", columns, volts < low - TOLERANCE_V, low)
+        self._spells("high_voltage", columns, volts > high + TOLERANCE_V, high)
+        self._spells("current_limited", columns, limited, np.nan)
+        self._regroup(columns)
 
-    def _look_at(self, k: int, rows: Rows) -> None:
-        u_low = self._voltages.u_min2
-        low = rows["voltage_v"] < u_low - TOLERANCE_V
-        self._spell("low_voltage", k, rows, low, "voltage_v", u_low)
-        self._spell(
-            "high_voltage", k, rows, rows["voltage_v"] > self._voltages.u_max2 + TOLERANCE_V, "voltage_v", self._voltages.u_max2
-        )
-        limited = np.isin(rows["limited_by"], LIMITS) & (rows["traction_n"] < rows["wished_n"])
-        self._spell("current_limited", k, rows, limited, "voltage_v", np.nan)
-        self._regroup(k, rows)
-
-    def _spell(self, kind: str, k: int, rows: Rows, inside: NDArray[np.bool_], field: str, limit: float) -> None:
-        """Note spells; one that is open at the end of the rows goes on with the next ones."""
-        before = self._open.pop((kind, k), None)
+    def _spells(self, kind: str, columns: Columns, inside: NDArray[np.bool_], limit: float) -> None:
+        """Note spells; one that is open at the end of the rows of a train goes on with its next ones."""
+        train, time_s = columns["train"], columns["time_s"]
+        first_of_train = np.diff(train, prepend=-1) != 0
+        last_of_train = np.diff(train, append=-1) != 0
+        starts = np.flatnonzero(inside & (first_of_train | ~np.roll(inside, 1)))
+        ends = np.flatnonzero(inside & (last_of_train | ~np.roll(inside, -1))) + 1
+        open_before, self._open[kind] = self._open[kind], {}
         pick = max if kind == "high_voltage" else min
-        edges = np.flatnonzero(np.diff(inside.astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
-        for first, end in edges.tolist():
-            value = float(pick(rows[field][first:end]))
-            event = before if first == 0 and before is not None else None
+        for first, end in zip(starts.tolist(), ends.tolist(), strict=True):
+            k = int(train[first])
+            value = float(pick(columns["voltage_v"][first:end]))
+            event = open_before.get(k) if first_of_train[first] else None
             if event is None:
-                event = self._note(kind, k, float(rows["time_s"][first]), float(rows["s_m"][first]), value, limit)
-                event["reason"] = LIMITED_BY[rows["limited_by"][first]]
-            event["value"], event["end_s"] = pick(event["value"], value), float(rows["time_s"][end - 1]) + self._step_s
-            if end == len(rows):
-                self._open[kind, k] = event
+                event = self._note(kind, k, float(time_s[first]), float(columns["s_m"][first]), value, limit)
+                event["reason"] = LIMITED_BY[columns["limited_by"][first]]
+            event["value"], event["end_s"] = pick(event["value"], value), float(time_s[end - 1]) + self._step_s
+            if last_of_train[end - 1]:
+                self._open[kind][k] = event
 
-    def _regroup(self, k: int, rows: Rows) -> None:
+    def _regroup(self, columns: Columns) -> None:
         """Note where series motors go from one grouping to another; off in between is no change."""
-        on = rows["grouping"] > 0
-        if not on.any():
-            return
-        groupings = rows["grouping"][on]
-        before = np.concatenate(([self._grouping.get(k, groupings[0])], groupings[:-1]))
-        for n in np.flatnonzero(groupings != before).tolist():
-            row = rows[on][n]
-            event = self._note("regrouped", k, float(row["time_s"]), float(row["s_m"]), float(groupings[n]), float(before[n]))
-            event["end_s"] = event["time_s"]
-        self._grouping[k] = int(groupings[-1])
+        on = np.flatnonzero(columns["grouping"])
+        train, grouping = columns["train"][on], columns["grouping"][on]
+        starts = np.diff(train, prepend=-1) != 0
+        before = np.roll(grouping, 1)
+        before[starts] = [self._grouping.get(k, first) for k, first in zip(train[starts], grouping[starts], strict=True)]
+        for n in np.flatnonzero(grouping != before).tolist():
+            time_s, at_m = float(columns["time_s"][on[n]]), float(columns["s_m"][on[n]])
+            event = self._note("regrouped", int(train[n]), time_s, at_m, float(grouping[n]), float(before[n]))
+            event["end_s"] = time_s
+        ends = np.diff(train, append=-1) != 0
+        self._grouping.update(zip(train[ends].tolist(), grouping[ends].tolist(), strict=True))
 
     def note(self, kind: str, k: int, time_s: float, s_m: float, subject: str = "") -> None:
         """Note an event of train `k` at a time [s] and place [m]; `subject` is the station of a call."""

@@ -179,6 +179,8 @@ def new_buffers(tables: BlockTables, rows: int, train_rows: int | None = None) -
 
 def take_rows(buffers: Buffers, rows: slice | NDArray[np.bool_]) -> Buffers:
     """Return some rows of all buffers; of the trains those of the same steps."""
+    if not isinstance(rows, slice) and rows.all():
+        return buffers
     counts = buffers.steps["trains"]
     if isinstance(rows, slice):
         start, stop, _ = rows.indices(len(counts))

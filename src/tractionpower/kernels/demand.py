@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tractionpower.kernels.jit import inlined
+from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.pantograph import auxiliary_current, feed_back_share
 from tractionpower.kernels.traction import traction
 from tractionpower.kernels.train_tables import INVERTER
@@ -26,7 +26,7 @@ def own_current(train, demand, u):
     return min(auxiliary_current(train, u), demand.line_a) * demand.on_line
 
 
-@inlined
+@njit
 def demand_current(tables, train, trial, demand, u):
     """Return the mean current of a train in a step at the voltage `u` [V], positive from the line.
 

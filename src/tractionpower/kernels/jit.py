@@ -61,13 +61,16 @@ FLAGS = {"error_model": "numpy", "nogil": True, "_nrt": False}
 
 
 def njit(function: Callable[..., Any]) -> Any:
-    """Compile `function` with the flags of this project; nothing that hides NaN."""
-    return _compiled(function, FLAGS)
+    """Compile `function` with the flags of this project; nothing that hides NaN.
+
+    Private ones are for kernels only: without the door to Python they compile in half the time.
+    """
+    return _compiled(function, FLAGS | {"no_cpython_wrapper": function.__name__.startswith("_")})
 
 
 def inlined(function: Callable[..., Any]) -> Any:
-    """Compile `function` as `njit` does, and into its callers: for small functions inside the step of a train."""
-    return _compiled(function, FLAGS | {"forceinline": True})
+    """Compile `function` into its callers, which are kernels: for small functions inside the step of a train."""
+    return _compiled(function, FLAGS | {"forceinline": True, "no_cpython_wrapper": True})
 
 
 def _compiled(function: Callable[..., Any], flags: dict[str, Any]) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tractionpower.kernels.effort import look_up
 from tractionpower.kernels.jit import njit
-from tractionpower.kernels.train_step import settle_alone, wish
+from tractionpower.kernels.train_step import step_alone
 from tractionpower.kernels.train_tables import STAYING
 
 ARRIVED, STUCK, OUT_OF_ROWS = 0, 1, 2
@@ -42,8 +42,7 @@ def run_journey(tables, state, k, clock, voltage, rows):
     for n in range(rows.shape[0]):
         t = start + n * h
         u, _ = look_up(voltage, 0, voltage.shape[0], mover.s_m)
-        wish(tables, state, k, t, h)
-        settle_alone(tables, state, k, (t, h), u, rows[n])
+        step_alone(tables, state, k, (t, h), u, rows[n])
         if mover.status >= STAYING:
             return n + 1, ARRIVED, t + h
         if mover.held_s >= STUCK_S:

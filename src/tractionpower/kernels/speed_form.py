@@ -16,7 +16,7 @@ from tractionpower.kernels.journey import ARRIVED, OUT_OF_ROWS, STUCK, STUCK_S
 from tractionpower.kernels.pantograph import auxiliary_current
 from tractionpower.kernels.series_motors import choose_notch
 from tractionpower.kernels.traction import permitted_effort
-from tractionpower.kernels.train_step import free_current, settle_alone, wish
+from tractionpower.kernels.train_step import free_current, step_alone
 from tractionpower.kernels.train_tables import (
     ACCELERATING,
     COASTING,
@@ -53,8 +53,7 @@ def run_over_speed(tables, state, k, clock, voltage, rows):
         if mover.status == RUNNING:
             spent = _speed_step(tables, state, k, (now, h * SPEED_PER_TIME), u, rows[n])
         if spent == 0.0:
-            wish(tables, state, k, now, h)
-            settle_alone(tables, state, k, (now, h), u, rows[n])
+            step_alone(tables, state, k, (now, h), u, rows[n])
             spent = h
         now += spent
         if mover.status >= STAYING:

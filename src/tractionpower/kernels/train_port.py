@@ -175,7 +175,7 @@ def _add_break(breaks, count, u, low, high):
     return count + 1
 
 
-@inlined
+@njit
 def _find_breaks(tables, train, trial, breaks):
     """Fill `breaks` with the voltages between which the characteristic is to be fitted; return their number."""
     low, high = train.lowest_v, 2.0 * train.nominal_v
@@ -225,7 +225,7 @@ def _fit(tables, state, k, segments, place, breaks):
     return end
 
 
-@inlined
+@njit
 def _find_kink(tables, train, trial, demand, ends):
     """Return the voltage from which the regime is no longer that of the lower end."""
     low, high, regime = ends
@@ -239,7 +239,7 @@ def _find_kink(tables, train, trial, demand, ends):
     return high
 
 
-@inlined
+@njit
 def _fit_piece(tables, state, k, segments, end, ends):
     """Put a segment through both ends of a piece and its middle."""
     low, low_a, high, high_a = ends

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from tractionpower.kernels.demand import demand_current, demanded_traction, fill_row, own_current
-from tractionpower.kernels.jit import inlined
+from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.motion import run_step
 from tractionpower.kernels.pantograph import auxiliary_current, current_limit
 from tractionpower.kernels.series_motors import at_full, choose_notch, lowest_notch, notch_below
@@ -53,7 +53,7 @@ def wish(tables, state, k, t, h):
         _expect_braking(tables, state, k, (t, h), demand)
 
 
-@inlined
+@njit
 def _expect_braking(tables, state, k, clock, demand):
     """Take the braking of a step that begins with traction from what the last voltage permits, where it limits.
 
@@ -180,14 +180,15 @@ def settle(tables, state, k, clock, line, row):
     row.limited_by = limited_by
 
 
-@inlined
-def settle_alone(tables, state, k, clock, u, row):
-    """Let train `k` do what the voltage `u` [V] of an infinite bus permits of its wish, and fill `row`."""
+@njit
+def step_alone(tables, state, k, clock, u, row):
+    """Run train `k` over the step (start, length) [s] on an infinite bus of the voltage `u` [V], and fill `row`."""
+    wish(tables, state, k, clock[0], clock[1])
     current, _ = demand_current(tables, tables.trains[k], state.trials[k], state.demands[k], u)
     settle(tables, state, k, clock, (u, current, 1.0), row)
 
 
-@inlined
+@njit
 def _retry(tables, state, k, clock, target_w):
     """Run the step again with the mean power `target_w` [W] (of an inverter drive from the line, of others at the wheel).
 
@@ -216,7 +217,7 @@ def _retry(tables, state, k, clock, target_w):
             cap = low + (high - low) * min(max((target_w - low_w) / (high_w - low_w), 0.05), 0.95)
 
 
-@inlined
+@njit
 def _restart(tables, state, k):
     """Put the trial of train `k` back to the start of the step; its notch and relay stay as they were chosen."""
     train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
