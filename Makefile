@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint bench docs clean
+.PHONY: help setup demo test lint bench docs images clean
 
 help:          ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -40,6 +40,9 @@ bench: setup   ## measure speed beside peers; see docs/performance.md
 
 docs: setup    ## reference pages made from the declarations
 	$(BIN)/python docs/make_reference.py
+
+images: setup  ## figures of the README drawn anew, from a day of the real line
+	$(BIN)/python docs/make_images.py
 
 clean:         ## remove what the targets made
 	rm -rf $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

@@ -1,10 +1,16 @@
-"""Write the reference pages from the declarations: docs/inputs.md and docs/results.md."""
+"""Write the reference pages: docs/inputs.md from the declarations, docs/results.md also from a run of the template study.
+
+What a run writes and this page does not describe, or the other way round, is an error.
+"""
 
 from __future__ import annotations
 
+import re
+import tempfile
 import types
 import typing
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
@@ -12,6 +18,10 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
+import tractionpower as tp
+from tractionpower.cosimulation import events
+from tractionpower.io.templates import write_template
+from tractionpower.kernels.train_tables import LIMITED_BY, PHASES
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import StudyFile
@@ -19,6 +29,7 @@ from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Timetable
 from tractionpower.model.vehicle import Train, Vehicle
 from tractionpower.results.columns import TABLES
+from tractionpower.results.windows import WINDOWS_S, window_label
 
 HERE = Path(__file__).parent
 FILES = {
@@ -40,20 +51,86 @@ a/b).
 """
 NOTE = "<!-- made by `make docs` from the declarations; do not edit -->\n"
 SIGNS = """Parquet files in the folder of the run. Currents and powers are positive when taken from the line, and when a
-substation feeds. A row describes the step that begins at `time_s`; the sum of `power_kw` times the step is the energy.
+substation feeds. A row describes the step that begins at `time_s`: place, speed and phase are those of that instant; forces,
+currents, voltages and powers are means of the step, so the sum of `power_kw` times the step is the energy. A train has rows
+while it is on the line; where it enters or leaves within a step, the means are those of the whole step. A table that would have
+no rows may be missing.
 With `output.every_s` only the steps at that interval have rows; key figures use all of them.
 """
+PHASE = {
+    "accelerating": "gives all the traction that it may and is below its ceiling; on a slope it may lose speed",
+    "cruising": "keeps to the speed ceiling",
+    "coasting": "rolls: a train without a drive",
+    "braking": "brakes towards a lower limit or a stop",
+    "dwelling": "stands at a stop, or at the end of its route",
+    "waiting": "is not on the line yet at the start of the step",
+    "holding": "stands on its way, as its effort does not move it",
+    "unpowered": "gets no traction, for instance below U_min2 or with an open undervoltage relay",
+}
+LIMIT = {
+    "nothing": "the driver gets the starting effort, or wishes none",
+    "speed": "the speed ceiling: the driver wishes no more",
+    "adhesion": "adhesion between wheel and rail",
+    "drive": "power or characteristic of the drive",
+    "line_current": "largest train current of the line (`line.train_current_limits`)",
+    "train_current": "largest current of the train itself",
+    "voltage": "the voltage: current limit below the knee, power over voltage, natural curve of series motors below U_n",
+}
+EVENTS = {
+    "train_entered": ("a train comes onto the line", "", ""),
+    "train_left": ("a train leaves the line", "", ""),
+    "stop": ("a train stops at a station", "", ""),
+    "departure": ("a train departs from a station", "", ""),
+    "low_voltage": ("spell of a train below U_min2", "lowest voltage [V]", "U_min2"),
+    "high_voltage": ("spell of a train above U_max2", "highest voltage [V]", "U_max2"),
+    "current_limited": (
+        "spell of a train whose effort is cut by voltage, line current or train current",
+        "lowest voltage [V]",
+        "",
+    ),
+    "regrouped": ("series motors change their grouping", "motors in series after", "before"),
+    "substation_blocked": ("spell in which the rectifiers block", "highest voltage of the busbar [V]", "no-load voltage"),
+    "not_servable": ("spell in which all demand had to be cut (`limits: none`)", "smallest share that can be served", "1"),
+    "not_converged": ("spell of steps in which a node does not balance", "largest imbalance [A]", "limit of a flag"),
+    "limit_violated": ("a verdict that is not met, at the time of its worst value", "what was found", "the limit"),
+}
+SPELLS = "A spell is one event, at its start; `message` tells its end. `track` and `position_km` are those of the start."
+RUN_JSON = {
+    "format": "1; a newer one is refused",
+    "status": "`complete`; `flagged`: a step did not converge or could not be served, or a ledger does not close; `interrupted`",
+    "study, name": "folder and name of the study",
+    "input_hash": "SHA-256 of the canonical JSON of the resolved inputs, whatever the files were called",
+    "seed": "seed of everything that is drawn",
+    "step_s, start_s, end_s": "the clock [s]",
+    "coupling": "`full` or `constant_voltage`",
+    "versions": "tractionpower and the packages that results can depend on",
+    "wall_seconds, compile_seconds": "time of the run, with kernels that had to be compiled, and of checks and tables before [s]",
+    "steps, flagged_steps": "steps computed, and those that did not converge or could not be served",
+    "worst_residual_a, residual_limit_a": "largest imbalance of a node in any step, and the one from which a step is flagged [A]",
+    "mean_iterations": "solutions of the linear network in a step, mean",
+    "ledgers": "`electric`, `mechanical`, `pantograph_to_wheel`: `closes`, worst gap, energies [kWh]; formulas: docs/model.md",
+    "verdicts": "found values against limits, below",
+    "overlaps": "pairs of trains that stood in each other: `count`, and in words which",
+    "trains": "each with `status`, `entered_s`, `finished_s`, `distance_m`; status: `left` the line, `stays` at its end, "
+    "`on_line` at the end of the clock, `stuck` there (for a minute or more its effort has not moved it), `outside`: never came",
+    "files": "size and SHA-256 of every file",
+}
 FILES_OF_A_RUN = """## Other files
 
 | file | holds |
 |---|---|
-| `run.json` | Status, residuals, ledgers, verdicts; size and SHA-256 of every file. Written last: results are what it names. |
-| `key_figures.json` | The figures that sum the run up, each with name, value, unit, place, time, definition. |
+| `run.json` | How the run went, below. Written last: results are what it names. |
+| `key_figures.json` | The figures that sum the run up, below. |
 | `scenario.json` | What was computed, resolved: all inputs in one file. Its SHA-256 is the `input_hash` of the run. |
-| `report.xlsx`, `figures/` | For people; `tractionpower report DIR` writes them again from the tables, without a simulation. |
+| `figures/` | PNG: train graph, voltages along the line, loads of substations; in `trains/` single trains. |
+| `report.xlsx` | Verdicts in words, limits, trains, calls, substations, energy, charts, events, inputs, definitions. |
 | `.running/` | Complete parts of the tables while a run lasts. `tractionpower report DIR --partial` reads them after a crash. |
 
-## Tables for other programs
+Figures and workbook are made from the tables: `tractionpower report DIR` writes them again without a simulation. A file that
+another program holds open stays, and the new one stands beside it with `.new` before its suffix. `tractionpower journey`
+writes `trains`, `calls`, `key_figures.json` and `run.json` of the same form.
+"""
+EXPORT = """## Tables for other programs
 
 `tractionpower export DIR --to csv,xlsx,netcdf [--tables trains,calls] [--out FOLDER]` writes into `DIR/export/`.
 
@@ -63,6 +140,23 @@ FILES_OF_A_RUN = """## Other files
   than a sheet (1 048 575 rows) is refused: export it as CSV.
 - **netcdf**: one file for each table (classic format with 64-bit offsets), a variable for each column over the dimension
   `row`, with unit and meaning. A missing number is NaN. Needs SciPy: `pip install tractionpower[netcdf]`.
+"""
+VERDICTS = """## Verdicts
+
+Each has `name`, `value`, `unit`, `place`, `time`, `limit` with `limit_value`, `source` and `status`, and `met`. A voltage is
+beyond a limit when it is so by more than 0.1 V. Limits are rows of `src/tractionpower/data/limits.csv`, overlaid by `limits:` of
+the study; a verdict whose limit the system has no row for is left out.
+
+| verdict | unit | limit | status of the limit that ships for dc3000 |
+|---|---|---|---|"""
+FIGURES = """## key_figures.json
+
+A list of `name`, `value`, `unit`, `place`, `time` (HH:MM:SS), `definition`, `status`. The place is `train ID`, `substation ID`,
+`load ID` or `zone A–B` (between two neighbouring substations); figures of the whole run have none, or that of the extreme value.
+W in a name is a window: WINDOWS.
+Windows longer than the run are left out, as are figures without a value, such as the delay of a train without planned times.
+Steps before the end of `clock.warm_up` count in lengths, times, delays, energies of auxiliaries and losses, and the energies of
+the whole run only.
 """
 
 
@@ -77,14 +171,78 @@ def inputs_page() -> str:
 
 
 def results_page() -> str:
-    """Return the page of all result columns."""
-    parts = [NOTE, "# Tables of a run\n"]
-    parts.append(SIGNS)
+    """Return the page of all results."""
+    results = run_template()
+    parts = [NOTE, "# Results of a run\n", SIGNS]
     for name, columns in TABLES.items():
         parts.append(f"## {name}.parquet\n\n| column | unit | meaning |\n|---|---|---|")
         parts += [f"| `{c.name}` | {c.quantity.unit} | {c.quantity.meaning} |" for c in columns]
         parts.append("")
-    return "\n".join([*parts, FILES_OF_A_RUN])
+        if name == "trains":
+            parts += [_words("phase", PHASE, PHASES), _words("limited_by", LIMIT, LIMITED_BY)]
+    parts += [_kinds_of_events(), FILES_OF_A_RUN, _keys_of_run(results.run)]
+    parts += [VERDICTS, *_verdicts(results.run["verdicts"]), ""]
+    parts += [
+        FIGURES.replace("WINDOWS", ", ".join(f"`{window_label(window)}`" for window in WINDOWS_S)),
+        *_figures(results.key_figures),
+    ]
+    return "\n".join([*parts, EXPORT])
+
+
+def run_template() -> tp.Results:
+    """Return a run of the study that `tractionpower new` writes, long enough for all windows."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_template(Path(folder) / "study")
+        scenario = tp.change(tp.load(Path(folder) / "study"), [f"clock.end={WINDOWS_S[-1] / 3600.0 + 1.0:02.0f}:00:00"])
+        return tp.simulate(scenario)
+
+
+def _agree(what: str, told: Iterable[str], found: Iterable[str]) -> None:
+    if set(told) != set(found):
+        raise SystemExit(f"docs/make_reference.py: {what}: told or found only {sorted(set(told) ^ set(found))}")
+
+
+def _words(column: str, meanings: dict[str, str], found: Iterable[str]) -> str:
+    _agree(column, meanings, found)
+    rows = [f"| `{word}` | {meaning} |" for word, meaning in meanings.items()]
+    return "\n".join([f"| `{column}` | meaning |", "|---|---|", *rows, ""])
+
+
+def _kinds_of_events() -> str:
+    _agree("kinds of events", EVENTS, events._TOLD)
+    rows = ["| `kind` | what | `value` | `limit` |", "|---|---|---|---|"]
+    rows += [f"| `{kind}` | {' | '.join(words)} |" for kind, words in EVENTS.items()]
+    return "\n".join([*rows, "", SPELLS, ""])
+
+
+def _keys_of_run(run: dict[str, Any]) -> str:
+    _agree("run.json", [key for keys in RUN_JSON for key in keys.split(", ")], [*run, "files"])
+    rows = [f"| {', '.join(f'`{key}`' for key in keys.split(', '))} | {meaning} |" for keys, meaning in RUN_JSON.items()]
+    return "\n".join(["## run.json\n\n| key | holds |\n|---|---|", *rows, ""])
+
+
+def _verdicts(verdicts: list[dict[str, Any]]) -> Iterator[str]:
+    for each in verdicts:
+        limit = f"`{each['limit']}`, {each['limit_value']:g} {each['unit']}"
+        yield f"| {each['name']} | {each['unit']} | {limit} | {each['status']}: {each['source']} |"
+
+
+def _figures(figures: list[dict[str, Any]]) -> Iterator[str]:
+    """Yield a table for each kind of place, windows taken together."""
+    count = Counter(figure["name"] for figure in figures)
+    labels = "|".join(window_label(window) for window in WINDOWS_S)
+    rows: dict[str, dict[str, str]] = {"": {}, "substation": {}, "load": {}, "train": {}, "zone": {}}
+    for figure in figures:
+        kind = figure["place"].split(" ")[0]
+        if kind not in ("load", "zone") and count[figure["name"]] == 1:
+            kind = ""  # of the whole run: a place is that of the extreme value
+        name, meaning = figure["name"], figure["definition"]
+        if name.startswith(("highest_mean_power_", "highest_rms_current_")):
+            name = re.sub(f"_({labels})_", "_W_", name)
+            meaning = re.sub(r"over \d+ \w+", "over W", meaning)
+        rows[kind][name] = f"| `{name}` | {figure['unit']} | {meaning.replace('|', chr(92) + '|')} |"
+    for kind, own in rows.items():
+        yield "\n".join([f"| {kind or 'whole run'} | unit | definition |", "|---|---|---|", *own.values(), ""])
 
 
 def _table(model: type[BaseModel]) -> str:
