@@ -19,9 +19,8 @@ $(STAMP): pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
 	@touch $@
 
-demo: setup    ## the main jobs on a shipped line
-	$(BIN)/tractionpower run two-substations
-	$(BIN)/tractionpower journey two-substations/trains.yaml
+demo: setup    ## the main job on a real line: a day of trains and network of the CMK
+	$(BIN)/tractionpower run cmk
 
 lint: setup    ## style, types, import contract
 	$(BIN)/ruff check .

@@ -82,7 +82,7 @@ def test_a_shipped_line_runs_and_the_cases_are_met_in_an_empty_folder(command, t
     assert "the lines that ship with tractionpower" in ran.stderr
     assert "compiling the kernels" in ran.stderr
     assert (folder / "reports" / "two-substations" / "run.json").is_file()
-    ran = call(command, "journey", "two-substations/trains.yaml", "--train", "2", cwd=folder, env=environment)
+    ran = call(command, "journey", "two-substations", "--train", "2", cwd=folder, env=environment)
     assert "00:09:04" in ran.stdout
     call(command, "curves", "en57", cwd=folder, env=environment)
     assert (folder / "reports" / "curves" / "en57.png").is_file()

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -32,6 +32,7 @@ def run(
     from tractionpower.cli.console import warn_of_compilation
     from tractionpower.cli.messages import tell, tell_beside, tell_problems
     from tractionpower.cli.report import tell_reports
+    from tractionpower.cli.run_summary import show
     from tractionpower.io.scenario_files import load_scenario
     from tractionpower.model.change import apply_changes
     from tractionpower.reporting.reports import WORKBOOK
@@ -44,8 +45,10 @@ def run(
     prepared, writer = _prepare(loaded, scenario, folder, force)
     tell_problems(loaded.provenance.place([*loaded.problems, *prepared.warnings]))
     outcome = _execute(prepared, writer)
+    show(outcome, prepared)
+    if not no_reports:
+        tell("writing figures and workbook")
     reports, unwritten = ([], None) if no_reports else _write_reports(folder, scenario)
-    _show(outcome, prepared)
     if unwritten is not None:
         raise unwritten
     tell(f"results: {folder}")
@@ -116,42 +119,3 @@ def _exit_code(outcome: Outcome, strict: bool) -> int:
     if strict and not all(verdict["met"] for verdict in outcome.run["verdicts"]):
         return LIMIT_VIOLATED
     return DONE
-
-
-def _show(outcome: Outcome, prepared: Run) -> None:
-    """Print what a designer asks first: the loads of the substations, the voltages, the verdicts."""
-    from tractionpower.cli.console import new_console, new_table
-
-    console = new_console()
-    figures = {(figure["name"], figure["place"]): figure["value"] for figure in outcome.key_figures}
-    columns = {
-        "highest_current_a": "highest current [A]",
-        "rms_current_a": "RMS current [A]",
-        "mean_current_a": "mean current [A]",
-        "highest_power_kw": "highest power [kW]",
-        "energy_kwh": "energy [kWh]",
-    }
-    table = new_table(["substation"], list(columns.values()))
-    for substation in prepared.scenario.supply.substations:
-        values = (figures[name, f"substation {substation.id}"] for name in columns)
-        table.add_row(substation.id, *(f"{value:.1f}" for value in values))
-    console.print(table)
-    console.print()
-    for verdict in outcome.run["verdicts"]:
-        console.print(_sentence(verdict))
-    ledger = outcome.run["ledgers"]["electric"]
-    closes = "closes" if ledger["closes"] else "DOES NOT CLOSE"
-    console.print(
-        f"electric ledger {closes} (worst step {ledger['worst_gap_w']:.2g} W);"
-        f" every node balances within {outcome.run['worst_residual_a']:.2g} A"
-    )
-    if outcome.run["flagged_steps"]:
-        console.print(f"{outcome.run['flagged_steps']} steps are flagged, see table events:")
-        for message in prepared.recorder.events.messages():
-            console.print("  " + message)
-
-
-def _sentence(verdict: dict[str, Any]) -> str:
-    word = "met" if verdict["met"] else "VIOLATED"
-    limit = f"{verdict['limit']} {verdict['limit_value']:g} V, source status: {verdict['status']}"
-    return f"{verdict['name']} {verdict['value']:.1f} V at {verdict['place']}, {verdict['time']}: {word} ({limit})"

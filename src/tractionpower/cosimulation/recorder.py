@@ -167,7 +167,19 @@ class Recorder:
             "verdicts": self._verdicts(),
             "overlaps": self.trains.overlaps.summary(),
             "trains": self.trains.status(),
+            "notes": list(self._notes()),
         }
+
+    def _notes(self) -> Iterator[str]:
+        """Yield what a reader of the results has to know."""
+        if self.scenario.coupling != "full":
+            yield "trains take the currents of a constant voltage: the voltages that these cause do not limit them"
+        stuck = [train["train"] for train in self.trains.status() if train["status"] == "stuck"]
+        if stuck:
+            yield f"stuck, since effort or power lack: train{'s' if len(stuck) > 1 else ''} {', '.join(stuck)}"
+        overlaps = self.trains.overlaps.summary()["message"]
+        if overlaps:
+            yield overlaps
 
     def _lowest(self) -> tuple[float, str, float]:
         return self._extreme("lowest", min)

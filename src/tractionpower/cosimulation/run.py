@@ -13,7 +13,7 @@ import pyarrow as pa
 from tractionpower.cosimulation.check import check_scenario, step_count
 from tractionpower.cosimulation.recorder import Recorder
 from tractionpower.cosimulation.start import start_state
-from tractionpower.cosimulation.tables import compile_scenario
+from tractionpower.cosimulation.tables import compile_scenario, coupling_voltage
 from tractionpower.errors import Problem, raise_errors
 from tractionpower.kernels.block import advance
 from tractionpower.kernels.block_tables import Buffers, new_buffers
@@ -99,8 +99,11 @@ class Run:
 
         After an interruption `outcome` still tells what was done; rows computed so far are with the writer.
         """
-        started, block = time.perf_counter(), FIRST_BLOCK
         tables, buffers, spare = self.compiled.block, self._new_buffers(), self._new_buffers()
+        started, block = time.perf_counter(), FIRST_BLOCK
+        advance(tables, self.state, buffers, self.done)  # no step: compiles the kernels, or takes them from the cache
+        self.compile_seconds += time.perf_counter() - started
+        started = time.perf_counter()
         with ThreadPoolExecutor(1) as recording:  # the block holds no lock: rows are recorded while the next ones are computed
             pending: Future[None] | None = None
             while self.done < self.steps:
@@ -139,7 +142,7 @@ class Run:
             "step_s": self.scenario.clock.step_s,
             "start_s": self.scenario.clock.start,
             "end_s": self.scenario.clock.end,
-            "coupling": self.scenario.coupling,
+            **self._coupling(),
             "versions": versions(),
             "wall_seconds": self.wall_seconds,
             "compile_seconds": self.compile_seconds,
@@ -147,6 +150,10 @@ class Run:
             **self.recorder.summary(),
         }
         return Outcome(run, self.recorder.key_figures(), self.warnings)
+
+    def _coupling(self) -> dict[str, Any]:
+        volts = coupling_voltage(self.scenario, self.compiled.supply)
+        return {"coupling": self.scenario.coupling} | ({} if volts is None else {"coupling_voltage_v": volts})
 
     def _status(self) -> str:
         if self.done < self.steps:

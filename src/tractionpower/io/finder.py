@@ -37,7 +37,7 @@ def find_study(study: str | Path) -> Study:
     """Return the study that a user means by a path or by the name of a shipped line.
 
     A path that exists wins over a shipped name. A shipped line is named alone, or with one of its study files, such as
-    ``two-substations/trains.yaml``. Names are looked up in ``lines`` of the working folder, then in the package.
+    ``two-substations/loads.yaml``. Names are looked up in ``lines`` of the working folder, then in the package.
 
     Raises
     ------

@@ -196,10 +196,8 @@ what ships with tractionpower.
 ```
 tractionpower check .      lists everything that is wrong with the files
 tractionpower journey .    computes the journeys of the trains at nominal voltage
-tractionpower run .        computes the network with its loads and writes tables and reports
+tractionpower run .        computes trains and network together and writes tables and reports
 ```
-
-This version does not couple trains with the network yet: for `run`, put a `#` before `timetable:` in `study.yaml`.
 
 Say here where your data come from, what is measured and what is assumed.
 """
