@@ -1,4 +1,4 @@
-"""Measure how fast tractionpower is: its solver, its trains, beside general programs, and its start. Entry of ``make bench``."""
+"""Measure how fast tractionpower is: solver, trains, whole days, beside general programs, start. Entry of ``make bench``."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import argparse
 import sys
 from collections.abc import Callable
 
+import day
+import line
 import peers
 import report
 import solver
@@ -22,6 +24,14 @@ def _train(quick: bool) -> str:
     return train.describe(train.measure(9 if quick else 45))
 
 
+def _day(quick: bool) -> str:
+    return day.describe(day.measure(1 if quick else 5))
+
+
+def _line(quick: bool) -> str:
+    return line.describe(line.measure(1 if quick else 5))
+
+
 def _peers(quick: bool) -> str:
     return peers.describe(peers.compare(*((30, 3) if quick else (60, 11))))
 
@@ -30,7 +40,14 @@ def _startup(quick: bool) -> str:
     return startup.describe(startup.measure(3 if quick else 9))
 
 
-PARTS: dict[str, Callable[[bool], str]] = {"solver": _solver, "train": _train, "peers": _peers, "startup": _startup}
+PARTS: dict[str, Callable[[bool], str]] = {
+    "solver": _solver,
+    "train": _train,
+    "day": _day,
+    "line": _line,
+    "peers": _peers,
+    "startup": _startup,
+}
 
 
 def main() -> int:
