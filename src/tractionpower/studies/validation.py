@@ -1,8 +1,8 @@
 """Reference cases: studies with expected figures, their tolerance and their source.
 
 A case is a folder with a study and a ``case.yaml`` that lists checks. A check may change inputs first, and names the
-figures that must come out by table, device and column: ``loads.train.voltage_v``; those of theoretical journeys by train
-and figure: ``journeys.ic.running_time_s``, in both forms of the equations of motion.
+figures that must come out by table, train or device, and column: ``loads.depot.voltage_v``, ``trains.ic.current_a``; those
+of theoretical journeys by train and figure: ``journeys.ic.running_time_s``, in both forms of the equations of motion.
 """
 
 from __future__ import annotations
@@ -112,11 +112,11 @@ def _find(folder: Path, case: Case, check: Check, form: Form | Literal[""], scen
 
 
 def _compute(scenario: Scenario) -> tuple[dict[str, float], str]:
-    """Return the figures of the first step of every device, the factor of an event, and the status of the run."""
+    """Return the figures of the first step of every train and device, the factor of an event, and the status of the run."""
     writer = MemoryWriter()
     outcome = Run(scenario, writer).execute()
     figures: dict[str, float] = {}
-    for table, key in (("substations", "substation"), ("loads", "load"), ("events", "kind")):
+    for table, key in (("trains", "train"), ("substations", "substation"), ("loads", "load"), ("events", "kind")):
         rows: list[dict[str, Any]] = writer.tables()[table].to_pylist() if table in writer.tables() else []
         for row in rows:
             for column, value in row.items():
