@@ -29,6 +29,9 @@ HEADING_LENGTH = 80
 PADDING = 2.5
 """Width of a column beyond that of its texts [characters]."""
 
+WIDE = 16
+"""More columns are printed on A3."""
+
 LINE_POINTS = 15.0
 """Height of a line of text [pt]."""
 
@@ -173,7 +176,9 @@ class Page:
         self.sheet.row_breaks.append(Break(id=self.next - 1))
 
     def finish(self) -> None:
-        """Set the widths of the columns, when all is written."""
+        """Set the widths of the columns and the paper, when all is written."""
+        sheet = self.sheet
+        sheet.page_setup.paperSize = sheet.PAPERSIZE_A3 if sheet.max_column > WIDE else sheet.PAPERSIZE_A4
         for number, width in self._needed.items():
             self.sheet.column_dimensions[get_column_letter(number)].width = width + PADDING
         if self.sheet.freeze_panes is None:
@@ -202,7 +207,7 @@ class Page:
     def _set_up(self, study: str) -> None:
         sheet = self.sheet
         sheet.sheet_view.showGridLines = False
-        sheet.page_setup.orientation, sheet.page_setup.paperSize = "landscape", sheet.PAPERSIZE_A4
+        sheet.page_setup.orientation = "landscape"
         sheet.sheet_properties.pageSetUpPr.fitToPage = True
         sheet.page_setup.fitToWidth, sheet.page_setup.fitToHeight = 1, 0
         sheet.page_margins.left = sheet.page_margins.right = 0.5
