@@ -29,7 +29,7 @@ def same(read, stored):
     if isinstance(stored, bool | str):
         return read == stored
     if isinstance(stored, float) and not isinstance(stored, np.float32):
-        return math.isclose(read, stored, rel_tol=1e-15)  # Excel's files hold 16 digits
+        return math.isclose(float(read), stored, rel_tol=1e-15)  # Excel's files hold 16 digits
     return type(stored)(read) == stored
 
 
