@@ -28,11 +28,19 @@ def _rows_of(train: str, call: JourneyCall, end_m: float) -> Iterator[CallRow]:
         times = [_first(planned["arrival"], planned["departure"]), _first(actual["arrival"], actual["departure"])]
         yield CallRow(train, call.station, "pass", *times)
         return
-    ways = {"arrival": call.at_m >= AT_END_M, "departure": not call.at_m > end_m - AT_END_M}
-    for kind, takes_place in ways.items():
-        if takes_place or np.isfinite(planned[kind]):
+    for kind, is_told in (("arrival", _arrives(call)), ("departure", departs(call, end_m))):
+        if is_told:
             dwell = actual["departure"] - actual["arrival"] if kind == "departure" else np.nan
             yield CallRow(train, call.station, kind, planned[kind], actual[kind], dwell)
+
+
+def departs(call: JourneyCall, end_m: float) -> bool:
+    """Tell whether a train departs from a call: not where its run ends, at `end_m` [m], unless the timetable says so."""
+    return call.planned_departure_s is not None or not call.at_m > end_m - AT_END_M
+
+
+def _arrives(call: JourneyCall) -> bool:
+    return call.planned_arrival_s is not None or call.at_m >= AT_END_M
 
 
 def time_at_stops(calls: Sequence[JourneyCall], start_s: float, finished_s: float) -> float:

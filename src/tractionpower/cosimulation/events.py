@@ -16,6 +16,9 @@ from tractionpower.results.spells import TOLERANCE_V
 from tractionpower.results.tables import make_table
 from tractionpower.supply.compile import SupplyTables
 
+_ORDER = {"train_entered": 0, "departure": 2, "train_left": 3}
+"""Kinds of events that come before or after others of the same time."""
+
 KINDS = {NOT_SERVABLE: "not_servable", NOT_CONVERGED: "not_converged"}
 
 
@@ -103,8 +106,8 @@ class EventLog:
         return [message(row) for row in self.rows if row["kind"] in KINDS.values()]
 
     def table(self) -> pa.Table:
-        """Return the rows of table ``events``, by time."""
-        rows = sorted(self.rows, key=lambda row: (row["time_s"], row["kind"], row["subject"]))
+        """Return the rows of table ``events``, by time; what a train does at the same time in the order that it does it."""
+        rows = sorted(self.rows, key=lambda row: (row["time_s"], _ORDER.get(row["kind"], 1), row["kind"], row["subject"]))
         columns: dict[str, Any] = {name: [row[name] for row in rows] for name in ("time_s", "position_km", "value", "limit")}
         columns["message"] = _coded([message(row) for row in rows])
         for name in ("kind", "subject", "track"):

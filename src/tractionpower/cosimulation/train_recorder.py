@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.cosimulation.calls import call_rows, late_at_end, time_at_stops
+from tractionpower.cosimulation.calls import call_rows, departs, late_at_end, time_at_stops
 from tractionpower.cosimulation.overlaps import Overlaps
 from tractionpower.cosimulation.places import Placed, Places
 from tractionpower.cosimulation.tables import CompiledScenario
@@ -168,7 +168,7 @@ class TrainRecorder:
             for call in calls:
                 if call.kind == "stop" and call.arrival_s >= clock_s:
                     self.events.note("stop", k, call.arrival_s, call.at_m, call.station)
-                if call.kind == "stop" and call.departure_s >= clock_s:
+                if call.kind == "stop" and call.departure_s >= clock_s and departs(call, planned.route_m):
                     self.events.note("departure", k, call.departure_s, call.at_m, call.station)
             if mover["status"] == GONE and mover["finished_s"] >= clock_s:
                 self.events.note("train_left", k, float(mover["finished_s"]), planned.route_m)
