@@ -47,15 +47,10 @@ class Overlaps:
         order = np.lexsort((low, placed.track, time_s))
         time_s, train, low, track = time_s[order], train[order], low[order], placed.track[order]
         high = low + length[order]
-        # Sorted by their lower ends, trains that overlap are neighbours, unless one lies within another.
-        for away in (1, 2):
-            same = (time_s[away:] == time_s[:-away]) & (track[away:] == track[:-away])
-            for n in np.flatnonzero(same & (low[away:] < high[:-away])).tolist():
-                pair = sorted((int(train[n]), int(train[n + away])))
-                known = self.pairs.setdefault(
-                    (pair[0], pair[1]), Overlap(0, float(time_s[n]), int(track[n]), float(low[n + away]))
-                )
-                known.steps += 1
+        for n, m in _reaching(time_s, track, low, high):
+            pair = sorted((int(train[n]), int(train[m])))
+            new = Overlap(0, float(time_s[n]), int(track[n]), float(low[m]))
+            self.pairs.setdefault((pair[0], pair[1]), new).steps += 1
 
     def summary(self) -> dict[str, Any]:
         """Return how many pairs of trains overlap, and in words which."""
@@ -68,3 +63,21 @@ class Overlaps:
         more = f" and {len(first) - 5} more pairs" if len(first) > 5 else ""
         message = f"trains do not see each other; these overlap: {'; '.join(told)}{more}" if told else ""
         return {"count": len(first), "message": message}
+
+
+def _reaching(
+    time_s: NDArray[np.float64], track: Numbers, low: NDArray[np.float64], high: NDArray[np.float64]
+) -> list[tuple[int, int]]:
+    """Return which rows reach into which others, by time; rows are sorted by time, track and lower end.
+
+    A row that does not reach the one n places further on reaches none beyond it.
+    """
+    found, first, away = [], np.arange(len(low)), 1
+    while len(first):
+        first = first[first + away < len(low)]
+        second = first + away
+        same = (time_s[second] == time_s[first]) & (track[second] == track[first])
+        first = first[same & (low[second] < high[first])]
+        found += [(n, n + away) for n in first.tolist()]
+        away += 1
+    return sorted(found)
