@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from small_studies import load, make_scenario, run_in_memory
+from small_studies import load, make_scenario, run_in_memory, station
 
 from tractionpower.cosimulation.events import EventLog
 from tractionpower.kernels.block_tables import STEP_RESULT
@@ -158,3 +158,12 @@ def test_a_step_that_is_served_again_is_served_in_full():
     steady = results.table("loads").query("load == 'steady'").set_index("time_s")["power_kw"]
     np.testing.assert_allclose(steady.drop([4.0, 5.0]), 1000.0, rtol=1e-6)
     assert (steady[[4.0, 5.0]] < 990.0).all()
+
+
+def test_a_plant_that_conducts_both_ways_does_not_block():
+    stations = [station("A", 0.0), station("B", 20.0, conducts="both")]
+    results, _, _ = run_in_memory(make_scenario(load("x", 10.0, power_kw=-2000.0), substations=stations))
+    rows = results.table("substations").set_index("substation")
+    assert (rows.loc["B", "current_a"] < -100.0).all()
+    assert (rows["voltage_v"] > 3600.0).all()
+    assert list(results.table("events").query("kind == 'substation_blocked'")["subject"]) == ["A"]

@@ -1,6 +1,5 @@
 """Events of trains against the rows, scanned one after the other."""
 
-import numpy as np
 import pytest
 from coupled import couple, run
 from small_studies import run_in_memory

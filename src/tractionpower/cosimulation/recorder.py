@@ -49,6 +49,8 @@ class Recorder:
         self.wanted = set(TABLES if wanted is None else wanted)
         feeds = supply.source_port >= 0
         self.no_load_v = np.where(feeds, [no_load_voltage(s) for s in supply.substations], np.nan)
+        one_way = [substation.conducts == "forward" for substation in supply.substations]
+        self.rectifier_v = np.where(one_way, self.no_load_v, np.nan)  # a plant that conducts both ways never blocks
         self.dissipative_ohm = np.array([_given(s.dissipative_resistance_ohm) for s in supply.substations])
         self.substation_a = Extremes(len(supply.substations))
         self.substation_w = Extremes(len(supply.substations))
@@ -82,7 +84,7 @@ class Recorder:
         self.steps += len(rows.steps)
         self.ledger.add(rows.steps, self.step_s)
         self.events.add(time_s, rows.steps)
-        self.events.add_blocked(time_s, rows.source_v, self.no_load_v)
+        self.events.add_blocked(time_s, rows.source_v, self.rectifier_v)
         counted = time_s >= self.figures_from_s - 1e-9
         t, rows = time_s[counted], take_rows(rows, counted)
         self.substation_a.add(t, rows.source_a)
