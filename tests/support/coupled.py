@@ -10,6 +10,7 @@ from tractionpower.cosimulation.tables import CompiledScenario, compile_scenario
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.kernels.block import advance
 from tractionpower.kernels.block_tables import State, new_buffers
+from tractionpower.model.line import Line
 from tractionpower.model.scenario import Scenario
 
 LENGTH_KM = 20.0
@@ -60,7 +61,7 @@ def couple(*runs: dict[str, Any], end_s: float = 600.0, step_s: float = 1.0, **m
     outer = {key: more.pop(key) for key in ("coupling", "coupling_voltage_v", "output") if key in more}
     return Scenario.model_validate(
         {
-            "line": line | {key: more.pop(key) for key in list(more) if key in line},
+            "line": line | {key: more.pop(key) for key in list(more) if key in Line.model_fields},
             "supply": supply | more,
             "clock": {"start": 0.0, "end": end_s, "step_s": step_s},
             "timetable": {"trains": list(runs)},
