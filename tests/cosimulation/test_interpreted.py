@@ -1,7 +1,15 @@
 """Tiny runs that also pass when numba compiles nothing, and mean the same: ``NUMBA_DISABLE_JIT=1 pytest -m interpreted``."""
 
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
+from coupled import couple, run
+from interpreted import found_in, tiny_coupling
 from small_studies import load, make_scenario, run_in_memory, station
 
 pytestmark = pytest.mark.interpreted
@@ -51,3 +59,33 @@ def test_feeders_and_a_busbar_alone():
     found, outcome = voltages(make_scenario(load("x", 5.0), substations=stations, clock={"end": 1.0}))
     assert 3000.0 < found["x"].iloc[0] < 3600.0
     assert outcome.run["ledgers"]["electric"]["closes"]
+
+
+def test_trains_of_every_drive():
+    found = found_in(tiny_coupling())
+    assert found["status"] == "complete"
+    assert all(found["ledgers"].values())
+    assert found["phases"] == ["accelerating", "braking"]
+    assert np.isfinite(found["rows"]).all()
+
+
+@pytest.mark.parametrize("kind", ["inverter", "series_motors", "table"])
+def test_one_train_takes_what_the_network_gives(kind):
+    results, _, _ = run_in_memory(couple(run("E", kind, speed_kmh=60.0), end_s=3.0))
+    rows, fed = results.table("trains"), results.table("substations")
+    np.testing.assert_allclose(fed.groupby("time_s")["current_a"].sum(), rows["current_a"], rtol=1e-5)
+    assert (rows["current_a"] > 300.0).all()
+    assert (np.diff(rows["speed_kmh"]) > 0.0).all()
+
+
+def test_compiled_and_interpreted_runs_find_the_same():
+    script = Path(__file__).parents[1] / "support" / "interpreted.py"
+    ways = [path for path in sys.path if path] + [str(script.parent)]
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(ways)}
+    said = subprocess.run([sys.executable, str(script)], env=environment, capture_output=True, text=True, check=True)
+    other, here = json.loads(said.stdout), found_in(tiny_coupling())
+    assert other["phases"] == here["phases"]
+    np.testing.assert_allclose(other["rows"], here["rows"], rtol=1e-6, atol=1e-6)
+    assert set(other["figures"]) == set(here["figures"])
+    for name, value in here["figures"].items():
+        assert other["figures"][name] == pytest.approx(value, rel=1e-9, abs=1e-9), name

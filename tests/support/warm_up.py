@@ -40,6 +40,15 @@ def _run_trains() -> None:
     drive_curves(scenario.trains[0], scenario.vehicles, scenario.limits)
 
 
+def _run_coupled() -> None:
+    """Compile what trains and network need together, with windows, spells and sums."""
+    from coupled import couple, run  # noqa: PLC0415
+
+    from tractionpower.cosimulation.simulate import simulate  # noqa: PLC0415
+
+    simulate(couple(run("E"), run("S", "series_motors"), run("T", "table", "2", 20.0, 0.0, speed_kmh=60.0), end_s=20.0))
+
+
 def main() -> None:
     from tractionpower.cosimulation.simulate import simulate  # noqa: PLC0415 - importing it is part of what is timed
 
@@ -47,6 +56,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         simulate(tiny_scenario(), folder)
     _run_trains()
+    _run_coupled()
     print(f"kernels are compiled: {time.perf_counter() - started:.1f} s")
 
 
