@@ -83,6 +83,8 @@ def test_at_constant_voltage_a_port_takes_one_current_at_any_voltage(volts):
     advance(tables, state, new_buffers(tables, 60), 60)
     ask_line(tables, state, 60.0)
     port = tables.network.ports[tables.fleet["port"][0]]
-    currents = {port_current(tables.network.segments, port, u) for u in (-100.0, 0.0, 1000.0, 2900.0, 5000.0)}
+    currents = {port_current(tables.network.segments, port, u) for u in (2000.0, 2900.0, 3599.0, 5000.0)}
     assert len(currents) == 1
+    assert port_current(tables.network.segments, port, 1000.0) == pytest.approx(0.5 * max(currents))
+    assert port_current(tables.network.segments, port, -100.0) == 0.0
     assert currents.pop() > 100.0

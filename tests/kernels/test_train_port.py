@@ -118,3 +118,33 @@ def test_a_table_bends_at_its_voltages():
     scenario = make_trains(9.0, drive=table, speed_kmh=72.0, mass_t=1e4)
     _, found, _ = next(gaps(scenario, 2900.0))
     np.testing.assert_allclose(np.interp([2300.0, 2800.0, 3000.0], found[:, 0], found[:, 1]), [550.0, 850.0, 1000.0], rtol=1e-9)
+
+
+LIMITED_LINE = [{"from_km": -1.0, "to_km": 7.0, "max_current_a": 600.0, "standstill_current_a": 30.0}]
+POWERS = [
+    {"voltage_v": volts, "power_kw": kw} for volts, kw in ((2000.0, 600.0), (2700.0, 1800.0), (3000.0, 3000.0), (4000.0, 3000.0))
+]
+AWKWARD = {
+    "table at low voltage": {"drive": TABLE},
+    "limited table at low voltage": {"drive": TABLE | {"max_current_a": 700.0}},
+    "power table that crosses the knee": {"drive": INVERTER | {"power_over_voltage": POWERS, "max_current_a": 900.0}},
+    "auxiliaries that the line cuts": {"drive": INVERTER, "train_current_limits": LIMITED_LINE},
+}
+
+
+@pytest.mark.parametrize("name", AWKWARD)
+def test_kinks_within_a_regime_and_below_the_lowest_voltage_are_met(name):
+    scenario = make_trains(6.0, auxiliaries={"power_kw": 120.0, "heating_kw": 80.0}, **LINE | AWKWARD[name])
+    worst = 0.0
+    for _, found, _ in gaps(scenario, 2800.0, 250):
+        worst = max(worst, np.abs(found[:, 1] - found[:, 2]).max())
+    assert worst < (1.2 if "table at" in name else 0.05)  # A; what has no segment's form is fitted
+
+
+@pytest.mark.parametrize("volts", [1500.0, 1900.0, 2500.0])
+@pytest.mark.parametrize("more", [{}, {"max_current_a": 700.0}])
+def test_below_the_lowest_voltage_a_table_drive_gives_no_more_than_it_takes(volts, more):
+    stepper = Stepper(make_trains(6.0, drive=TABLE | more, auxiliaries={"power_kw": 120.0}, **LINE))
+    for _ in range(60):
+        row = stepper.step(volts)
+        assert row["drive_loss_w"] >= -1e-6 * abs(row["power_w"])

@@ -106,12 +106,17 @@ def test_currents_at_constant_voltage_are_those_of_the_theoretical_journeys():
         assert same > 100
         offset = rows["time_s"][0] - journey.rows["time_s"][0]
         if offset == 0.0:
-            np.testing.assert_allclose(rows["current_a"][:same], journey.rows["current_a"][:same], rtol=1e-9, atol=1e-6)
-            np.testing.assert_allclose(rows["s_m"][:same], journey.rows["s_m"][:same], rtol=1e-12, atol=1e-9)
+            current, volts, places = (rows[name][:same] for name in ("current_a", "voltage_v", "s_m"))
+            held = (volts > 2000.0) & (volts < 3600.0)  # beyond, what the network gives or takes folds back
+            assert held.sum() > 0.9 * same
+            np.testing.assert_allclose(current[held], journey.rows["current_a"][:same][held], rtol=1e-9, atol=1e-6)
+            np.testing.assert_allclose(places, journey.rows["s_m"][:same], rtol=1e-12, atol=1e-9)
     assert np.abs(done.trains["voltage_v"] - 2900.0).max() > 100.0
-    np.testing.assert_allclose(
-        done.trains["coupling_w"], (done.trains["voltage_v"] - 2900.0) * done.trains["current_a"], rtol=1e-12, atol=1e-9
-    )
+    reckoned = 2900.0 * done.trains["current_a"]
+    held = (done.trains["voltage_v"] > 2000.0) & (done.trains["voltage_v"] < 3600.0)
+    np.testing.assert_allclose(done.trains["coupling_w"][held], (done.trains["power_w"] - reckoned)[held], rtol=1e-9, atol=1e-6)
+    returned = np.maximum(-done.trains["power_w"], 0.0)
+    np.testing.assert_allclose(done.trains["returned_w"], returned)
 
 
 def test_the_order_and_the_names_of_trains_change_nothing(mixed):

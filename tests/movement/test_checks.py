@@ -288,7 +288,7 @@ def test_a_route_without_contact_line_is_told_once_for_all_runs():
     lines = [row | {"resistance_ohm_per_km": 0.05} for row in rows]
     supply = type(scenario.supply).model_validate(scenario.supply.model_dump(by_alias=True) | {"contact_lines": lines})
     found = only(scenario.model_copy(update={"supply": supply}))
-    assert (found.code, found.path, found.severity) == ("no_contact_line", f"{RUN}.route", "warning")
+    assert (found.code, found.path, found.severity) == ("no_contact_line", f"{RUN}.route", "error")
     assert found.found == "the train finds no contact line on track 1 from km 2 to km 3.5; likewise trains y, z"
     back = study(runs=[make_run("x", 10.0, backwards=True)], calls=[]).model_copy(update={"supply": supply})
     assert "from km 3.5 to km 2" in only(back).found

@@ -21,7 +21,11 @@ COLUMNS = {
 }
 """Key figures of a substation that are printed, and their headings; windows longer than the run are left out."""
 
+MOST = 12
+"""Trains that are named in one line."""
+
 STATUS = {
+    "before": "had left before the clock",
     "left": "left the line",
     "stays": "stay at the end of their route",
     "on_line": "are on the line at the end",
@@ -74,7 +78,13 @@ def _trains(outcome: Outcome) -> Iterator[str]:
         seconds, train = max(late)
         many = sum(value >= 0.5 for value, _ in late)
         yield f"late at their last timed call: {many} of {len(late)}" + (f", most {train} by {seconds:.0f} s" if many else "")
+    overdue = [train["train"] for train in outcome.run["trains"] if train["overdue_s"] > 0.0]
+    if overdue:
+        more = f" and {len(overdue) - MOST} more" if len(overdue) > MOST else ""
+        yield f"overdue at a call that they have not reached: {', '.join(overdue[:MOST])}{more}"
     yield from outcome.run["notes"]
+    if outcome.run["overlaps"]["count"]:
+        yield outcome.run["overlaps"]["message"]
 
 
 def _ledgers(run: dict[str, Any]) -> Iterator[str]:

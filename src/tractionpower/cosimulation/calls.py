@@ -51,14 +51,27 @@ def time_at_stops(calls: Sequence[JourneyCall], start_s: float, finished_s: floa
 def _stood(call: JourneyCall, start_s: float, finished_s: float) -> float:
     """Return how long a train stood at a call [s]; at the start of its run since it is on the line."""
     if not np.isfinite(call.departure_s):
-        return max(0.0, finished_s - call.arrival_s) if np.isfinite(call.arrival_s) else 0.0
+        return max(0.0, finished_s - max(call.arrival_s, start_s)) if np.isfinite(call.arrival_s) else 0.0
     arrived = call.arrival_s if np.isfinite(call.arrival_s) else start_s if call.at_m < AT_END_M else call.departure_s
-    return float(call.departure_s - max(arrived, start_s))
+    return max(0.0, float(call.departure_s - max(arrived, start_s)))
 
 
-def late_at_end(rows: Sequence[CallRow]) -> float:
-    """Return how late a train was at the last call that it came to and the timetable has a time for [s]; NaN without one."""
+def late_at_end(rows: Sequence[CallRow], end_s: float) -> float:
+    """Return how late a train is at the end `end_s` [s] of a run; NaN without a call that the timetable has a time for [s].
+
+    That is its delay at the last timed call that it came to, or, if it should have come to another one by then, at least
+    the time since.
+    """
+    overdue = overdue_by(rows, end_s)
+    if overdue > 0.0:
+        return overdue
     return next((row.late_s for row in reversed(rows) if np.isfinite(row.late_s)), float("nan"))
+
+
+def overdue_by(rows: Sequence[CallRow], end_s: float) -> float:
+    """Return for how long a train has been missing at a call that it has not reached at `end_s` [s]; 0 if at none."""
+    missing = [end_s - row.planned_s for row in rows if np.isfinite(row.planned_s) and not np.isfinite(row.actual_s)]
+    return max([0.0, *missing])
 
 
 def _given(seconds: float | None) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from tractionpower.alignment.checks import check_line
-from tractionpower.cosimulation.route_checks import check_contact_lines
 from tractionpower.errors import Problem
 from tractionpower.model.base import format_time
 from tractionpower.model.scenario import Clock, Scenario
@@ -16,7 +15,7 @@ from tractionpower.supply.checks import check_supply
 
 def check_scenario(scenario: Scenario) -> list[Problem]:
     """Return every problem of a scenario whose parts are well formed; an empty list if there is none."""
-    problems = [
+    return [
         *check_line(scenario.line),
         *check_supply(scenario.supply, scenario.line, scenario.limits),
         *check_movement(scenario),
@@ -24,9 +23,6 @@ def check_scenario(scenario: Scenario) -> list[Problem]:
         *_check_output(scenario),
         *_check_connections(scenario),
     ]
-    if not any(problem.severity == "error" for problem in problems):
-        problems += check_contact_lines(scenario)
-    return problems
 
 
 def step_count(clock: Clock) -> int:

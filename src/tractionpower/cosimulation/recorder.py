@@ -57,7 +57,7 @@ class Recorder:
         self.load_v, self.load_w = Extremes(len(supply.loads)), Extremes(len(supply.loads))
         self.section_v = Extremes(len(supply.sections))
         self.windows = SubstationWindows.of(len(supply.substations), clock.step_s)
-        self.ledger = ElectricLedger()
+        self.ledger, self.counted = ElectricLedger(), ElectricLedger()
         self.events = EventLog(supply, clock.step_s, clock.start)
         self.now_s = clock.start
         self.worst_a, self.iterations, self.steps = 0.0, 0, 0
@@ -70,7 +70,7 @@ class Recorder:
         time_s: Array = self.scenario.clock.start + number.astype(float) * self.step_s
         taken = take_rows(buffers, slice(rows))
         self._note(time_s, taken)
-        placed = self.trains.add(taken.trains, self.figures_from_s - 1e-9)
+        placed = self.trains.add(taken.trains)
         written = number % self.every == 0
         self._write(time_s[written], take_rows(taken, written))
         if "trains" in self.wanted and len(taken.trains):
@@ -87,6 +87,7 @@ class Recorder:
         self.events.add_blocked(time_s, rows.source_v, self.rectifier_v)
         counted = time_s >= self.figures_from_s - 1e-9
         t, rows = time_s[counted], take_rows(rows, counted)
+        self.counted.add(rows.steps, self.step_s)
         self.substation_a.add(t, rows.source_a)
         power = np.nan_to_num(rows.source_v) * rows.source_a
         self.substation_w.add(t, power)
@@ -168,7 +169,7 @@ class Recorder:
             "ledgers": {"electric": self.ledger.as_dict(), **self.trains.ledgers()},
             "verdicts": self._verdicts(),
             "overlaps": self.trains.overlaps.summary(),
-            "trains": self.trains.status(),
+            "trains": self.trains.status(self.now_s),
             "notes": list(self._notes()),
         }
 
@@ -176,12 +177,9 @@ class Recorder:
         """Yield what a reader of the results has to know."""
         if self.scenario.coupling != "full":
             yield "trains take the currents of a constant voltage: the voltages that these cause do not limit them"
-        stuck = [train["train"] for train in self.trains.status() if train["status"] == "stuck"]
+        stuck = [train["train"] for train in self.trains.status(self.now_s) if train["status"] == "stuck"]
         if stuck:
             yield f"stuck, since effort or power lack: train{'s' if len(stuck) > 1 else ''} {', '.join(stuck)}"
-        overlaps = self.trains.overlaps.summary()["message"]
-        if overlaps:
-            yield overlaps
 
     def _lowest(self) -> tuple[float, str, float]:
         return self._extreme("lowest", min)
@@ -275,7 +273,7 @@ class Recorder:
             *window_figures(substations, self.windows),
             *load_figures([load.id for load in self.supply.loads], self.load_w, self.step_s),
             *self.trains.figures(self.now_s),
-            *ledger_figures(self.ledger),
+            *ledger_figures(self.counted),
         ]
         return [figure.as_dict() for figure in figures]
 

@@ -90,7 +90,7 @@ class Run:
         self.steps = step_count(scenario.clock)
         self.state = start_state(self.compiled)
         self.recorder = Recorder(scenario, self.compiled, self.state, writer)
-        self.done = 0
+        self._closed = False
         self.compile_seconds = time.perf_counter() - started
         self.wall_seconds = 0.0
 
@@ -106,23 +106,33 @@ class Run:
         started = time.perf_counter()
         with ThreadPoolExecutor(1) as recording:  # the block holds no lock: rows are recorded while the next ones are computed
             pending: Future[None] | None = None
-            while self.done < self.steps:
-                block_started = time.perf_counter()
-                rows, _ = advance(tables, self.state, buffers, min(self.done + block, self.steps))
-                pace = (time.perf_counter() - block_started) / max(rows, 1)
+            try:
+                while self.done < self.steps:
+                    block_started = time.perf_counter()
+                    rows, _ = advance(tables, self.state, buffers, min(self.done + block, self.steps))
+                    pace = (time.perf_counter() - block_started) / max(rows, 1)
+                    if pending is not None:
+                        pending.result()
+                    pending = recording.submit(self.recorder.add, self.done - rows, rows, buffers)
+                    buffers, spare = spare, buffers
+                    block = max(FIRST_BLOCK, int(BLOCK_S / max(pace, 1e-9))) if self.done > FIRST_BLOCK else FIRST_BLOCK
+                    self.wall_seconds = time.perf_counter() - started
+                    if progress is not None:
+                        progress(self.done, self.steps)
+            finally:  # an interruption leaves whole steps, and a failure to write is told, whatever came first
                 if pending is not None:
                     pending.result()
-                pending = recording.submit(self.recorder.add, self.done, rows, buffers)
-                buffers, spare = spare, buffers
-                self.done += rows
-                block = max(FIRST_BLOCK, int(BLOCK_S / max(pace, 1e-9))) if self.done > FIRST_BLOCK else FIRST_BLOCK
-                self.wall_seconds = time.perf_counter() - started
-                if progress is not None:
-                    progress(self.done, self.steps)
-            if pending is not None:
-                pending.result()
-        self.recorder.close()
+                ahead = self.done - self.recorder.steps
+                if ahead > 0:
+                    self.recorder.add(self.recorder.steps, ahead, buffers)
+                self.recorder.close()
+        self._closed = True
         return self.outcome()
+
+    @property
+    def done(self) -> int:
+        """Number of steps computed."""
+        return int(self.state.progress["step"][0])
 
     def _new_buffers(self) -> Buffers:
         """Return buffers of some `BUFFER_BYTES` for the steps, and as many for the trains."""
@@ -141,7 +151,7 @@ class Run:
             "seed": self.scenario.seed,
             "step_s": self.scenario.clock.step_s,
             "start_s": self.scenario.clock.start,
-            "end_s": self.scenario.clock.end,
+            "end_s": self.scenario.clock.end if self.done == self.steps else self.recorder.now_s,
             **self._coupling(),
             "versions": versions(),
             "wall_seconds": self.wall_seconds,
@@ -156,6 +166,6 @@ class Run:
         return {"coupling": self.scenario.coupling} | ({} if volts is None else {"coupling_voltage_v": volts})
 
     def _status(self) -> str:
-        if self.done < self.steps:
+        if self.done < self.steps or not self._closed:
             return "interrupted"
         return "flagged" if self.recorder.flagged else "complete"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.cosimulation.calls import call_rows, departs, late_at_end, time_at_stops
+from tractionpower.cosimulation.calls import call_rows, departs, late_at_end, overdue_by, time_at_stops
 from tractionpower.cosimulation.overlaps import Overlaps
 from tractionpower.cosimulation.places import Placed, Places
 from tractionpower.cosimulation.tables import CompiledScenario
@@ -38,8 +38,18 @@ Numbers = NDArray[np.int64]
 Rows = NDArray[np.void]
 
 MECHANICAL = ("wheel", "kinetic", "potential", "resistance", "brakes")
-PANTOGRAPH = ("line", "wheel", "drive_loss", "starting_resistors", "auxiliaries", "recovered", "coupling", "out_of_nothing")
-FIGURES = ("taken", "returned", "refused")
+PANTOGRAPH = (
+    "line",
+    "wheel",
+    "drive_loss",
+    "starting_resistors",
+    "auxiliaries",
+    "recovered",
+    "coupling",
+    "fitted",
+    "out_of_nothing",
+)
+FIGURES = ("taken", "returned", "refused", "auxiliaries", "drive_loss", "starting_resistors", "moved")
 
 STUCK_S = 60.0
 """A train that has held itself for so long at the end of the run is stuck [s]."""
@@ -82,6 +92,7 @@ class TrainRecorder:
     def __init__(self, scenario: Scenario, compiled: CompiledScenario, state: State) -> None:
         self._state, self._block = state, compiled.block
         self.movement, self.step_s = compiled.movement, scenario.clock.step_s
+        self._from_s = scenario.clock.start + (scenario.clock.warm_up or 0.0)
         self.names, self.places = self.movement.names, Places(scenario, self.movement)
         trains, voltages = len(self.names), compiled.supply.voltages
         lengths = np.array([planned.formation.length_m for planned in self.movement.runs]) / 1000.0
@@ -105,13 +116,13 @@ class TrainRecorder:
 
     # -- rows ----------------------------------------------------------------------------------------------------
 
-    def add(self, rows: Rows, from_s: float) -> Placed:
-        """Take rows, ordered by time and then train, and return their places; key figures count those from `from_s` [s] on."""
+    def add(self, rows: Rows) -> Placed:
+        """Take rows, ordered by time and then train, and return their places; key figures leave the warm-up out."""
         placed = self.places.place(rows["train"], rows["s_m"])
         self.overlaps.add(rows["time_s"], rows["train"], placed)
         self.events.add(rows)
         self._add_ledgers(rows)
-        counted = rows["time_s"] >= from_s
+        counted = rows["time_s"] >= self._from_s - 1e-9
         if counted.all():
             self._count(rows, placed)
         elif counted.any():
@@ -134,8 +145,8 @@ class TrainRecorder:
     def _count(self, rows: Rows, placed: Placed) -> None:
         volts, time_s, train = (np.ascontiguousarray(rows[name]) for name in ("voltage_v", "time_s", "train"))
         taken = rows["power_w"] + rows["returned_w"]
-        energies = [taken * self.step_s, rows["returned_w"] * self.step_s, rows["refused_w"] * self.step_s]
-        add_by_group(self._figures, train, np.stack(energies, axis=1))
+        powers = (taken, *(rows[f"{name}_w"] for name in ("returned", "refused", "auxiliary", "drive_loss", "starting_resistor")))
+        add_by_group(self._figures, train, np.stack([*(power * self.step_s for power in powers), rows["moved_m"]], axis=1))
         order = np.argsort(train, kind="stable")
         groups = [mine for mine in np.split(order, np.flatnonzero(np.diff(train[order])) + 1) if len(mine)]
         self.lowest_v.add(rows, groups, "voltage_v", lowest=True)
@@ -146,7 +157,7 @@ class TrainRecorder:
         for spells in self.spells.values():
             spells.add(time_s, train, volts, self.step_s)
         zone = self.places.zone(placed)
-        self.useful.add(train, zone, volts, rows["current_a"], rows["traction_n"] > 0.0, self.step_s)
+        self.useful.add(train, zone, volts, rows["current_a"], rows["traction_n"] > 0.0, rows["on_line_s"])
         bins = self.places.bin(placed)
         add_by_group(self._bin_v, bins, np.stack([volts, np.ones(len(volts))], axis=1))
         np.minimum.at(self._bin_lowest, bins, volts)
@@ -213,15 +224,17 @@ class TrainRecorder:
         """Which trains have rows that count."""
         return np.isfinite(self.lowest_v.value)
 
-    def status(self) -> list[dict[str, Any]]:
-        """Return how far each train has come."""
+    def status(self, now_s: float) -> list[dict[str, Any]]:
+        """Return how far each train has come at the time `now_s` [s], and by how much it is overdue at a call not reached."""
+        clock_s = float(self._block.clock[0])
         return [
             {
                 "train": self.names[k],
-                "status": _status(mover),
+                "status": _status(mover, clock_s),
                 "entered_s": None if mover["status"] == OUTSIDE else planned.start_s,
                 "finished_s": None if np.isnan(mover["finished_s"]) else float(mover["finished_s"]),
                 "distance_m": float(mover["s_m"]),
+                "overdue_s": overdue_by(call_rows(self.names[k], self._calls(k), planned.route_m), now_s),
             }
             for k, (planned, mover) in enumerate(zip(self.movement.runs, self._state.trains.movers, strict=True))
         ]
@@ -238,27 +251,28 @@ class TrainRecorder:
                 continue
             mover, calls = self._state.trains.movers[k], self._calls(k)
             finished = float(mover["finished_s"]) if np.isfinite(mover["finished_s"]) else end_s
-            whole = finished - planned.start_s
-            stood = time_at_stops(calls, planned.start_s, finished)
-            taken, returned, refused = self._figures[k].tolist()
+            begin = max(planned.start_s, self._from_s)
+            whole = finished - begin
+            stood = time_at_stops(calls, begin, finished)
+            sums = dict(zip(FIGURES, self._figures[k].tolist(), strict=True))
             yield from train_figures(
                 TrainSummary(
-                    self.names[k], float(mover["s_m"]), whole, whole - stood,
-                    float(self._speed_mps.value[k]), float(self._speed_mps.time_s[k]), taken, returned,
+                    self.names[k], sums["moved"], whole, whole - stood,
+                    float(self._speed_mps.value[k]), float(self._speed_mps.time_s[k]), sums["taken"], sums["returned"],
                     float(self._current_a.value[k]), float(self._current_a.time_s[k]),
                 )
             )  # fmt: skip
-            yield from supply_figures(self._supply(k, refused, late_at_end(call_rows(self.names[k], calls, planned.route_m))))
+            late = late_at_end(call_rows(self.names[k], calls, planned.route_m), end_s)
+            yield from supply_figures(self._supply(k, sums, late))
         for name, weighted, mean in zip(
             self.places.zones, self.useful.zone_current_weighted_v, self.useful.zone_time_mean_v, strict=True
         ):
             yield from useful_figures(f"zone {name}", float(weighted), float(mean))
 
-    def _supply(self, k: int, refused_j: float, late_s: float) -> SupplySummary:
-        parts = dict(zip(PANTOGRAPH, self._pantograph[k].tolist(), strict=True))
+    def _supply(self, k: int, sums: dict[str, float], late_s: float) -> SupplySummary:
         window = self.ten_seconds
         return SupplySummary(
-            self.names[k], parts["auxiliaries"], parts["drive_loss"], parts["starting_resistors"], refused_j,
+            self.names[k], sums["auxiliaries"], sums["drive_loss"], sums["starting_resistors"], sums["refused"],
             float(self.lowest_v.value[k]), float(self.lowest_v.time_s[k]),
             float(window.best[0, k]), float(window.best_from_s[0, k]),
             float(self.useful.train_current_weighted_v[k]), float(self.useful.train_time_mean_v[k]), late_s,
@@ -279,11 +293,11 @@ def _groups_of(movement: Any) -> tuple[Numbers, list[int]]:
     return numbers, members
 
 
-def _status(mover: np.void) -> str:
+def _status(mover: np.void, clock_s: float) -> str:
     if mover["status"] == OUTSIDE:
         return "outside"
     if mover["status"] == GONE:
-        return "left"
+        return "left" if mover["finished_s"] >= clock_s else "before"
     if mover["status"] == STAYING:
         return "stays"
     return "stuck" if mover["held_s"] >= STUCK_S else "on_line"

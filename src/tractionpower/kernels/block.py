@@ -8,12 +8,15 @@ from __future__ import annotations
 import numpy as np
 
 from tractionpower.kernels.block_tables import BUFFER_FULL, DONE
-from tractionpower.kernels.fleet import answer_trains, ask_line, enter_trains
+from tractionpower.kernels.fleet import answer_trains, ask_line, enter_trains, revise_braking
 from tractionpower.kernels.flows import conductor_flows, skeleton_balance
 from tractionpower.kernels.jit import njit
 from tractionpower.kernels.network import CONVERGED, FLAG_A, NOT_CONVERGED, solve
 from tractionpower.kernels.ports import port_current
 from tractionpower.kernels.spans import place_ports
+
+MOST_REVISIONS = 4
+"""Solutions of one step more, where a train would brake otherwise than it thought before the voltage was known."""
 
 
 @njit
@@ -49,7 +52,13 @@ def advance(tables, state, buffers, until_step):
         ask_line(tables, state, t)
         if changed or progress.stale or progress.active > 0 or not progress.solved:
             _solve_step(tables, state, progress.solved)
+            for _ in range(MOST_REVISIONS):
+                if not revise_braking(tables, state, t):
+                    break
+                _solve_step(tables, state, True)
             progress.solved, progress.stale = True, False
+        else:
+            state.result[0].iterations = 0
         state.result[0].trains = progress.active
         _record(tables, state, buffers, row)
         used = answer_trains(tables, state, t, buffers.trains, used)
@@ -68,22 +77,20 @@ def _restore_loads(tables, state):
 @njit
 def _switch_loads(tables, state, t):
     """Switch loads by the time of day; tell whether one has changed."""
-    ports = tables.network.ports
     changed = False
     for k in range(tables.loads.shape[0]):
         load = tables.loads[k]
         on = load.from_s <= t < load.to_s
         changed = changed or on != state.load_on[k]
         state.load_on[k] = on
-    if changed:
-        for k in range(tables.loads.shape[0]):
-            ports[tables.loads[k].port].scale = 1.0 if state.load_on[k] else 0.0
     return changed
 
 
 @njit
 def _solve_step(tables, state, warm):
     network, work, result = tables.network, state.work, state.result[0]
+    for k in range(tables.loads.shape[0]):  # the step before may have cut them
+        network.ports[tables.loads[k].port].scale = 1.0 if state.load_on[k] else 0.0
     place_ports(network, work)
     status, iterations, worst, factor, port = solve(network, work, warm)
     heat, gap = conductor_flows(network, work, state.balance)

@@ -5,25 +5,35 @@ from __future__ import annotations
 from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.pantograph import auxiliary_current, feed_back_share
 from tractionpower.kernels.traction import traction
-from tractionpower.kernels.train_tables import INVERTER
+from tractionpower.kernels.train_tables import BY_VOLTAGE, INVERTER, TABLE
 
-_SAME = 1e-12
-
-LIMITED, COVERED, FED_BACK = 1, 16, 32
-"""Added up to a regime: traction gets less than it wishes (and by what), braking covers a part, or all and more."""
+OWN_CUT, COVERED, FED_BACK = 16, 32, 64
+"""Added to the piece of traction for a regime: the line cuts the auxiliaries, braking covers a part, or all and more."""
 
 
 @inlined
 def demanded_traction(tables, train, trial, demand, u):
-    """Return what `traction.traction` does, for a demand at the voltage `u` [V]."""
+    """Return what `traction.traction` does, for a demand at the voltage `u` [V].
+
+    Below U_min2 the current of a table drive falls with the voltage, and its power with the square, as auxiliaries do.
+    """
     midpoint = (demand.speed_mps, demand.half_s_per_kg, demand.resistance_n, demand.mean_mps)
-    return traction(tables, train, trial, demand.need_w, (u, demand.line_a), midpoint)
+    at = max(u, train.lowest_v) if train.drive == TABLE else u
+    got_w, taken, resistor_w, by, piece = traction(tables, train, trial, demand.need_w, (at, demand.line_a), midpoint)
+    if at > u:
+        share = max(u, 0.0) / at
+        got_w, taken, by = got_w * share * share, taken * share, BY_VOLTAGE
+    return got_w, taken, resistor_w, by, piece
 
 
 @inlined
 def own_current(train, demand, u):
-    """Return the mean current of auxiliaries and heating in the step at the voltage `u` [V], without regard to braking [A]."""
-    return min(auxiliary_current(train, u), demand.line_a) * demand.on_line
+    """Return the mean current of auxiliaries and heating in the step at the voltage `u` [V], without regard to braking [A].
+
+    Below U_min2 it falls with the voltage, where the limit of the line cuts it, too.
+    """
+    at = max(u, train.lowest_v)
+    return min(auxiliary_current(train, at), demand.line_a) * demand.on_line * (max(u, 0.0) / at)
 
 
 @njit
@@ -46,10 +56,10 @@ def demand_current(tables, train, trial, demand, u):
     at = max(u, train.lowest_v) if brakes else u
     current, regime = own_current(train, demand, at), 0
     if demand.need_w > 0.0:
-        got_w, taken, _, by = demanded_traction(tables, train, trial, demand, at)
+        _, taken, _, _, regime = demanded_traction(tables, train, trial, demand, at)
         current += taken * demand.moving
-        if not got_w >= demand.need_w * (1.0 - _SAME):
-            regime = LIMITED + by
+    if auxiliary_current(train, max(at, train.lowest_v)) > demand.line_a:
+        regime += OWN_CUT
     if brakes:
         own_w = at * current
         if own_w >= demand.gained_w:
@@ -88,18 +98,19 @@ def fill_row(train, tally, row, spent, line, parts):
         gained = max(gained, recovered)
     refused = gained - recovered if train.regenerates else 0.0
     heated = min(gained - recovered, train.rheostat_w)
-    electric_w = (recovered + heated) / train.brake_efficiency
     row.electric_brake_n = 0.0
-    if electric_w > 0.0:
+    if recovered + heated > 0.0:
+        electric_w = (recovered + heated) / train.brake_efficiency
         slow = tally.electric_ns / tally.electric_j if tally.electric_j > 0.0 else tally.brake_ns / tally.brake_j
         row.electric_brake_n = min(electric_w * slow, tally.brake_ns / spent)
     row.braking_resistor_w = heated
     row.auxiliary_w, row.starting_resistor_w = auxiliary_w, resistor_w
     row.refused_w, row.recovered_w = refused, recovered
     if train.drive == INVERTER:
-        row.drive_loss_w = (tally.line_j - tally.traction_j) / spent
+        row.drive_loss_w, row.fitted_w = (tally.line_j - tally.traction_j) / spent, 0.0
     else:
-        row.drive_loss_w = row.power_w + recovered - auxiliary_w - resistor_w - row.wheel_w
+        row.drive_loss_w = traction_w - resistor_w - row.wheel_w
+        row.fitted_w = row.power_w + recovered - auxiliary_w - traction_w
     row.traction_n = tally.traction_ns / spent
     row.friction_brake_n = tally.brake_ns / spent - row.electric_brake_n
     row.resistance_n = tally.resistance_ns / spent

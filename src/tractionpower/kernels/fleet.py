@@ -8,8 +8,8 @@ from tractionpower.kernels.demand import demand_current
 from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.motion import TINY_S
 from tractionpower.kernels.ports import port_current
-from tractionpower.kernels.train_port import write_port
-from tractionpower.kernels.train_step import settle, wish
+from tractionpower.kernels.train_port import write_constant_port, write_port
+from tractionpower.kernels.train_step import brakes_after_traction, expect_braking, settle, wish
 from tractionpower.kernels.train_tables import GONE
 
 
@@ -78,15 +78,31 @@ def ask_line(tables, state, t):
         wish(tables.trains, state.trains, k, t, h)
         _place(tables, state, k)
         port = tables.network.ports[tables.fleet[k].port]
-        port.scale = 1.0
+        port.scale = 1.0 if port.start_v > 0.0 else 0.0  # without a source the line is dead
         if fixed_v > 0.0:
-            train = tables.trains.trains[k]
-            i, _ = demand_current(tables.trains, train, state.trains.trials[k], state.trains.demands[k], fixed_v)
-            one = segments[port.first_segment]
-            one.from_v, one.a, one.b, one.c = -np.inf, i, 0.0, 0.0
-            port.segments = 1
+            write_constant_port(tables.trains, state.trains, k, port, segments, fixed_v)
         else:
             write_port(tables.trains, state.trains, k, port, segments, tables.fleet[k].room, state.breaks)
+
+
+@njit
+def revise_braking(tables, state, t):
+    """Let trains that brake after traction see the voltage found; tell whether one brakes otherwise than it thought.
+
+    Then its port is written anew, and the network is to be solved again.
+    """
+    if tables.clock[2] > 0.0:
+        return False
+    changed = False
+    for n in range(state.progress[0].active):
+        k = state.active[n]
+        if brakes_after_traction(tables.trains.trains[k], state.trains.wishes[k]):
+            port = tables.network.ports[tables.fleet[k].port]
+            u = state.work.ports[tables.fleet[k].port].u
+            if expect_braking(tables.trains, state.trains, k, (t, tables.clock[1]), u):
+                write_port(tables.trains, state.trains, k, port, tables.network.segments, tables.fleet[k].room, state.breaks)
+                changed = True
+    return changed
 
 
 @njit
@@ -100,12 +116,17 @@ def answer_trains(tables, state, t, rows, used):
     for n in range(progress.active):
         k = state.active[n]
         port = tables.network.ports[tables.fleet[k].port]
-        u = state.work.ports[tables.fleet[k].port].u
+        u = state.work.ports[tables.fleet[k].port].u if port.start_v > 0.0 else 0.0
         i, row = port_current(tables.network.segments, port, u), rows[used]
-        at = fixed_v if fixed_v > 0.0 else u
-        settle(tables.trains, state.trains, k, (t, tables.clock[1]), (at, i, port.scale), row)
-        row.coupling_w = (u - at) * i
-        row.voltage_v, row.power_w = u, u * i
+        if fixed_v > 0.0 and port.start_v > 0.0:
+            train, trial, demand = tables.trains.trains[k], state.trains.trials[k], state.trains.demands[k]
+            own, _ = demand_current(tables.trains, train, trial, demand, fixed_v)
+            settle(tables.trains, state.trains, k, (t, tables.clock[1]), (fixed_v, own, 1.0), row)
+            row.coupling_w = u * i - fixed_v * own
+            row.voltage_v, row.current_a, row.power_w, row.returned_w = u, i, u * i, max(-u * i, 0.0)
+        else:
+            settle(tables.trains, state.trains, k, (t, tables.clock[1]), (u, i, port.scale), row)
+            row.coupling_w = 0.0
         used += 1
         state.active[stay] = k
         if state.trains.movers[k].status != GONE:

@@ -15,6 +15,9 @@ from tractionpower.kernels.train_tables import (
     TABLE,
 )
 
+AS_WISHED, BY_TABLE, AT_FULL, AT_LIMIT = 0, 1, 2, 8
+"""Pieces of the characteristic of traction over the voltage."""
+
 FULL = 1e-9
 """A wish this near to the greatest power is that."""
 
@@ -44,45 +47,47 @@ def traction(tables, train, mover, need_w, lines, midpoint):
         Current from the line [A] and heat in starting resistors [W].
     by : int
         What limits it, if `power_w` is less than `need_w`.
+    piece : int
+        Which piece of the characteristic holds, one of `AS_WISHED`, `BY_TABLE`, `AT_FULL`, `AT_LIMIT`; added to the last one
+        what sets the limit.
     """
     u, line_a = lines
     if not u > 0.0 or need_w <= 0.0:
-        return 0.0, 0.0, 0.0, BY_VOLTAGE
+        return 0.0, 0.0, 0.0, BY_VOLTAGE, AS_WISHED
     limit, by = current_limit(train, u, line_a)
     free = max(limit - auxiliary_current(train, u), 0.0)
     if train.drive == INVERTER:
-        power = u * free
+        power, piece = u * free, AT_LIMIT + by
         if train.powers > 0:
             table, _ = look_up(tables.points, train.first_power, train.powers, u)
             table /= _efficiency_of(tables, train, mover, table, midpoint)
             if table < power:
-                power, by = table, BY_VOLTAGE
-        power = min(power, need_w)
-        return power, power / u, 0.0, by
-    power, current, resistor = need_w, 0.0, 0.0
+                power, by, piece = table, BY_VOLTAGE, BY_TABLE
+        if power >= need_w:
+            power, piece = need_w, AS_WISHED
+        return power, power / u, 0.0, by, piece
+    power, current, resistor, piece, set_by = need_w, 0.0, 0.0, AS_WISHED, by
     if train.drive == SERIES_MOTORS:
         notch = tables.notches[train.first_notch + mover.notch]
         current, most, resistor = at_full(tables, notch, u, midpoint)
         if need_w < most * (1.0 - FULL):
             current, resistor = at_part(tables, train, mover, u, need_w, midpoint)
         else:
-            power = min(most, need_w)
+            power, piece = min(most, need_w), AT_FULL
             if current <= free:
                 by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
     elif train.drive == TABLE:
-        current, most = _table_at(tables, train, max(u, train.lowest_v), midpoint)
-        if u < train.lowest_v:  # as auxiliaries do: no power at any voltage
-            current, most = current * u / train.lowest_v, most * (u / train.lowest_v) ** 2
+        current, most = _table_at(tables, train, u, midpoint)
         if need_w < most * (1.0 - FULL):
             current *= need_w / most
         else:
-            power = min(most, need_w)
+            power, piece = min(most, need_w), AT_FULL
             if current <= free:
                 by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
     if current > free:  # the drive takes turns with off
         share = free / current
-        return power * share, free, resistor * share, by
-    return power, current, resistor, by
+        return power * share, free, resistor * share, by, AT_LIMIT + set_by
+    return power, current, resistor, by, piece
 
 
 @inlined
@@ -100,7 +105,7 @@ def permitted_effort(tables, train, mover, v, lines):
     need_w = greatest * v
     if train.drive == INVERTER:
         need_w /= efficiency_at(tables, train, v, 1.0)
-    power, current, resistor_w, cut = traction(tables, train, mover, need_w, lines, (v, 0.0, 0.0, v))
+    power, current, resistor_w, cut, _ = traction(tables, train, mover, need_w, lines, (v, 0.0, 0.0, v))
     if need_w <= 0.0:
         return 0.0, 0.0, 0.0, by
     if power >= need_w * (1.0 - FULL):

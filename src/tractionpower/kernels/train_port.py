@@ -22,7 +22,7 @@ BREAKS = 64
 _FULL = 1e-9
 _NARROW_V = 2.0  # a narrower piece is fitted by a straight line
 _FINE_V = 1e-3
-_APART_V = 1.0
+_APART_V = 0.01
 _AROUND_V = (-400.0, -100.0, 0.0, 100.0, 400.0)  # of the last voltage, where duty cycles are fitted
 
 
@@ -57,7 +57,7 @@ def write_port(tables, state, k, port, segments, room, breaks):
     brakes = demand.gained_w > 0.0 and train.regenerates
     drives = demand.need_w > 0.0
     limit_a = min(train.max_current_a, demand.line_a)
-    if demand.line_a < own_a or (brakes and (drives or train.heating_s > 0.0)):
+    if limit_a < own_a or (brakes and (drives or train.heating_s > 0.0)):
         end = _fit(tables, state, k, segments, (end, first + room), breaks)
     elif brakes:
         end = _write_braking(train, demand, segments, end)
@@ -65,10 +65,33 @@ def write_port(tables, state, k, port, segments, room, breaks):
         end = _write_own(train, demand, segments, end, 0.0)
     elif train.drive == INVERTER and train.powers == 0 and train.knee_v > train.lowest_v and demand.line_a >= train.max_current_a:
         end = _write_inverter(train, demand, segments, end)
-    elif train.drive == SERIES_MOTORS and _is_full(tables, train, state.trials[k], demand, limit_a - own_a):
+    elif (
+        train.drive == SERIES_MOTORS
+        and train.knee_v <= train.lowest_v
+        and _is_full(tables, train, state.trials[k], demand, limit_a - own_a)
+    ):
         end = _write_motors(tables, train, state.trials[k], demand, segments, end)
     else:
         end = _fit(tables, state, k, segments, (end, first + room), breaks)
+    port.segments = end - first
+
+
+@njit
+def write_constant_port(tables, state, k, port, segments, u):
+    """Write the current of train `k` at the voltage `u` [V] for any voltage from U_min2 on, falling to zero below it.
+
+    What is fed back folds back all the same: nothing else keeps the voltage of a line that nobody draws from.
+    """
+    train, demand = tables.trains[k], state.demands[k]
+    i, _ = demand_current(tables, train, state.trials[k], demand, u)
+    first, low = port.first_segment, train.lowest_v
+    end = _put(segments, first, -np.inf, 0.0, 0.0, 0.0)
+    end = _put(segments, end, 0.0, 0.0, i / low, 0.0)
+    end = _put(segments, end, low, i, 0.0, 0.0)
+    if i < 0.0:
+        slope = i / (train.fold_to_v - train.fold_from_v)
+        end = _put(segments, end, train.fold_from_v, slope * train.fold_to_v, -slope, 0.0)
+        end = _put(segments, end, train.fold_to_v, 0.0, 0.0, 0.0)
     port.segments = end - first
 
 

@@ -25,6 +25,7 @@ from tractionpower.kernels.train_tables import (
 from tractionpower.kernels.wayside import line_current_limit
 
 _SAME = 1e-12
+_EXPECTED = 1e-9
 _FULL = 1e-9
 _MATCH = 1e-10
 _MOST_TRIES = 60
@@ -49,25 +50,37 @@ def wish(tables, state, k, t, h):
     demand = state.demands[k]
     _write_demand(tables, train, mover, tally, demand, h)
     trial.limit = mover.limit  # where the train was is what counts
-    if train.regenerates and tally.electric_j > 0.0 and tally.traction_j > 0.0:
-        _expect_braking(tables, state, k, (t, h), demand)
+    if brakes_after_traction(train, tally):
+        expect_braking(tables, state, k, (t, h), mover.voltage_v)
+
+
+@inlined
+def brakes_after_traction(train, tally):
+    """Tell whether a step holds both traction and braking that could feed back."""
+    return train.regenerates and tally.electric_j > 0.0 and tally.traction_j > 0.0
 
 
 @njit
-def _expect_braking(tables, state, k, clock, demand):
-    """Take the braking of a step that begins with traction from what the last voltage permits, where it limits.
+def expect_braking(tables, state, k, clock, u):
+    """Take the braking of a step that begins with traction from what the voltage `u` [V] permits; tell whether it changes.
 
     With the whole effort the train would come onto its braking curve faster, or at all.
     """
-    train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
-    got_w, _, _, _ = demanded_traction(tables, train, trial, demand, mover.voltage_v)
+    train, mover, trial, demand = tables.trains[k], state.movers[k], state.trials[k], state.demands[k]
+    got_w, _, _, _, _ = demanded_traction(tables, train, trial, demand, u)
+    if abs(got_w - demand.expected_w) <= _EXPECTED * demand.need_w:
+        return False
+    before = demand.gained_w
     if got_w >= demand.need_w * (1.0 - _SAME):
-        return
-    _retry(tables, state, k, clock, got_w * demand.moving)
-    demand.gained_w = train.brake_efficiency * state.done[k].electric_j / clock[1]
-    _restart(tables, state, k)
-    run_step(tables, train, trial, state.wishes[k], clock, np.inf, (state.arrived_s, state.left_s))
-    trial.limit = mover.limit  # where the train was is what counts
+        demand.gained_w = train.brake_efficiency * state.wishes[k].electric_j / clock[1]
+    else:
+        _retry(tables, state, k, clock, got_w * demand.moving)
+        demand.gained_w = train.brake_efficiency * state.done[k].electric_j / clock[1]
+        _restart(tables, state, k)
+        run_step(tables, train, trial, state.wishes[k], clock, np.inf, (state.arrived_s, state.left_s))
+        trial.limit = mover.limit
+    demand.expected_w = got_w
+    return demand.gained_w != before
 
 
 @inlined
@@ -76,7 +89,7 @@ def _write_demand(tables, train, mover, tally, demand, h):
     demand.moving, demand.on_line = tally.moving_s / h, tally.on_line_s / h
     demand.need_w = tally.line_j / tally.moving_s if tally.moving_s > 0.0 else 0.0
     demand.line_a = line_current_limit(tables, train, mover, tally.moving_s > 0.0)
-    demand.gained_w = train.brake_efficiency * tally.electric_j / h
+    demand.gained_w, demand.expected_w = train.brake_efficiency * tally.electric_j / h, demand.need_w
     demand.speed_mps, demand.half_s_per_kg, demand.resistance_n, demand.mean_mps = midpoint_of(train, mover, tally)
 
 
@@ -149,7 +162,7 @@ def settle(tables, state, k, clock, line, row):
     u, current, served = line
     train, mover, trial, demand = tables.trains[k], state.movers[k], state.trials[k], state.demands[k]
     wished, done = state.wishes[k], state.done[k]
-    got_w, taken, resistor_w, by = demanded_traction(tables, train, trial, demand, u)
+    got_w, taken, resistor_w, by, _ = demanded_traction(tables, train, trial, demand, u)
     got_w *= served
     row.train, row.time_s, row.s_m, row.v_mps = k, t, mover.s_m, mover.v_mps
     limited_by = wished.limited_by

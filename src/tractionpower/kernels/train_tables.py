@@ -193,6 +193,7 @@ DEMAND = np.dtype(
         ("on_line", "f8"),
         ("line_a", "f8"),  # largest train current that the line allows
         ("gained_w", "f8"),  # mean power that the electric brake gives
+        ("expected_w", "f8"),  # traction, of the kind of `need_w`, of which that braking is the consequence
         ("speed_mps", "f8"),  # at the start of the step
         ("half_s_per_kg", "f8"),  # half of the time that it moves over its inertia
         ("resistance_n", "f8"),
@@ -229,6 +230,7 @@ TRAIN_ROW = np.dtype(
         ("recovered_w", "f8"),  # of braking, used on the train or fed back
         ("brake_w", "f8"),  # power of all brakes at the wheel
         ("on_line_s", "f8"),  # time on the line within the step
+        ("fitted_w", "f8"),  # by which the port of the train differs from its characteristic
         ("coupling_w", "f8"),  # by which the power differs from what the train reckons with at constant voltage
         ("grouping", "i8"),  # motors in series of the notch of series motors that are on, else 0
     ]

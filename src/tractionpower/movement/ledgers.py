@@ -23,6 +23,9 @@ MECHANICAL_SHARE = 1e-3
 ELECTRIC_SHARE = 1e-6
 """The ledger from pantograph to wheel closes within this share."""
 
+FITTED_SHARE = 1e-3
+"""What the fit of a port may differ from the characteristic that it stands for, as a share."""
+
 
 @dataclass(frozen=True, slots=True)
 class TrainLedger:
@@ -42,13 +45,16 @@ class TrainLedger:
     @property
     def gap_share(self) -> float:
         """The gap over what is exchanged."""
-        gross = 0.5 * sum(map(abs, self.energy_j.values()))
-        return abs(self.gap_j) / gross if gross > 0.0 else 0.0
+        return self._share(self.gap_j)
 
     @property
     def closes(self) -> bool:
-        """Whether the gap is within what is allowed."""
-        return self.gap_share <= self.allowed_share
+        """Whether the gap is within what is allowed, and ports were fitted closely."""
+        return self.gap_share <= self.allowed_share and self._share(self.energy_j.get("fitted", 0.0)) <= FITTED_SHARE
+
+    def _share(self, joule: float) -> float:
+        gross = 0.5 * sum(map(abs, self.energy_j.values()))
+        return abs(joule) / gross if gross > 0.0 else 0.0
 
 
 def mechanical_parts(rows: NDArray[np.void], seconds: Floats, mass: Formation, path: RoutePath) -> dict[str, Floats]:
@@ -93,7 +99,8 @@ def mechanical_parts(rows: NDArray[np.void], seconds: Floats, mass: Formation, p
 def pantograph_parts(rows: NDArray[np.void], seconds: Floats) -> dict[str, Floats]:
     """Return energy from the line, work at the wheel, losses, auxiliaries, and what braking gives, of each row [J].
 
-    A drive that gives more than it takes leaves a gap, too. `coupling` is what the constant-voltage coupling leaves out.
+    A drive that gives more than it takes leaves a gap, too. `coupling` is what the constant-voltage coupling leaves out,
+    `fitted` by what the ports of duty cycles and tables differ from them.
     """
     named = {
         "line": -rows["voltage_v"] * rows["current_a"],
@@ -103,6 +110,7 @@ def pantograph_parts(rows: NDArray[np.void], seconds: Floats) -> dict[str, Float
         "auxiliaries": rows["auxiliary_w"],
         "recovered": -rows["recovered_w"],
         "coupling": rows["coupling_w"],
+        "fitted": rows["fitted_w"],
         "out_of_nothing": np.maximum(-rows["drive_loss_w"], 0.0),
     }
     return {name: power * seconds for name, power in named.items()}

@@ -131,7 +131,7 @@ def _place_calls(
 
 
 def _check_contact_line(path: str, run: TrainRun, route: RoutePath, formation: Formation, site: Site) -> list[Problem]:
-    """Return a warning if parts of the route have no contact line, and the train wants current."""
+    """Return an error if parts of the route have no contact line, and the train wants current."""
     if formation.driver is None and formation.auxiliary_w + formation.heating_w == 0.0:
         return []
     if run.route not in site.bare:
@@ -140,8 +140,8 @@ def _check_contact_line(path: str, run: TrainRun, route: RoutePath, formation: F
     if not bare:
         return []
     found = f"the train finds no contact line on {listed(bare, _SHOWN)}"
-    remedy = "it gets no current there; add a row to supply.contact_lines, or correct the route"
-    return [doubt("no_contact_line", f"{path}.route", found, remedy=remedy)]
+    remedy = "add a row to supply.contact_lines, or correct the route"
+    return [Problem("no_contact_line", f"{path}.route", found, remedy=remedy)]
 
 
 def _without_contact_line(route: RoutePath, contact: Coverage) -> Iterator[Interval]:

@@ -15,9 +15,9 @@ from tractionpower.results.ledgers import ElectricLedger
 from tractionpower.results.windows import ClockDemand, SlidingWindows, window_label
 
 LEDGER_FIGURES = {
-    "source": ("source_energy_kwh", "sum of E I over the whole run"),
-    "regulation": ("regulation_energy_kwh", "sum of (E - U) I over the whole run"),
-    "conductor": ("line_loss_kwh", "heat in contact lines, return circuit and feeders over the whole run"),
+    "source": ("source_energy_kwh", "sum of E I over the run, warm-up left out"),
+    "regulation": ("regulation_energy_kwh", "sum of (E - U) I over the run, warm-up left out"),
+    "conductor": ("line_loss_kwh", "heat in contact lines, return circuit and feeders over the run, warm-up left out"),
 }
 
 

@@ -10,7 +10,7 @@ import itertools
 import json
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -42,6 +42,10 @@ PARTIAL = "partial"
 """Folder of the reports of an unfinished run."""
 
 _PART = re.compile(r"(\w+)-(\d+)\.parquet")
+
+
+REPORTS = ("report.xlsx", "report.new.xlsx", "figures", PARTIAL)
+"""What reports of a run are called."""
 
 
 class RunWriter:
@@ -109,21 +113,33 @@ class RunWriter:
         dict
             What ``run.json`` holds: `run` with the files.
         """
-        with failures_told(self.folder):
-            files = [self._join(table) for table in TABLES if table in self._parts]
-            files.append(write_json(self.running / KEY_FIGURES_FILE, key_figures))
-            if self._scenario is not None:
-                files.append(self.running / SCENARIO_FILE)
-            entries = [{"size": file.stat().st_size, "sha256": sha256_of(file)} for file in files]
-            earlier = _earlier_files(self.folder)
-        with uninterrupted(), failures_told(self.folder, "Some files there are new and some old; mend that and run again"):
-            complete = run | {"files": {self._move_in(file): entry for file, entry in zip(files, entries, strict=True)}}
-            last = self._move_in(write_json(self.running / RUN_FILE, complete))
-            for stale in earlier - {*complete["files"], last, *(path.name for path in self.held)}:
-                with suppress(OSError):  # not named by run.json, so no part of the results
-                    (self.folder / stale).unlink()
-            shutil.rmtree(self.folder / RUNNING, ignore_errors=True)
+        with uninterrupted():  # all is computed: a second or two, and Ctrl-C would throw it away
+            with failures_told(self.folder):
+                files = [self._join(table) for table in TABLES if table in self._parts]
+                files.append(write_json(self.running / KEY_FIGURES_FILE, key_figures))
+                if self._scenario is not None:
+                    files.append(self.running / SCENARIO_FILE)
+                entries = [{"size": file.stat().st_size, "sha256": sha256_of(file)} for file in files]
+                earlier = _earlier_files(self.folder)
+            with failures_told(self.folder, "Some files there are new and some old; mend that and run again"):
+                complete = run | {"files": {self._move_in(file): entry for file, entry in zip(files, entries, strict=True)}}
+                last = self._move_in(write_json(self.running / RUN_FILE, complete))
+                for stale in earlier - {*complete["files"], last, *(path.name for path in self.held)}:
+                    with suppress(OSError):  # not named by run.json, so no part of the results
+                        (self.folder / stale).unlink()
+                self._remove_reports()
+                shutil.rmtree(self.folder / RUNNING, ignore_errors=True)
         return complete
+
+    def _remove_reports(self) -> None:
+        """Remove what was reported of the run before: beside the new tables it would be taken for theirs."""
+        for name in REPORTS:
+            path = self.folder / name
+            if path.is_dir():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                with suppress(OSError):  # not there, or open in another program
+                    path.unlink()
 
     def discard(self) -> None:
         """Leave no trace: nothing was computed."""
@@ -262,6 +278,10 @@ def _refuse_foreign(folder: Path, study: str, *, force: bool) -> None:
         raise UsageError(f"{folder} is a file; name a folder for the results with --out")
     if force:
         return
+    for other in _interrupted_studies(folder):
+        if other != study:
+            told = f"{folder} holds an interrupted run of another study ({other!r}, not {study!r})"
+            raise UsageError(f"{told}; choose --out, or --force")
     path = _run_file(folder)
     if path.is_file():
         run = read_json(path)
@@ -270,6 +290,14 @@ def _refuse_foreign(folder: Path, study: str, *, force: bool) -> None:
             raise UsageError(f"{folder} holds results of another study ({owner!r}, not {study!r}); choose --out, or --force")
     elif not all(entry.name in (RUNNING, PARTIAL) or _holds_results(entry) for entry in folder.iterdir()):
         raise UsageError(f"{folder} holds files that are no results of a run; choose another --out, or --force")
+
+
+def _interrupted_studies(folder: Path) -> Iterator[str]:
+    """Yield the studies whose interrupted runs a folder holds."""
+    for path in (folder / RUNNING).glob(f"*/{RUN_FILE}"):
+        run = read_json(path)
+        if run is not None:
+            yield str(run.get("study"))
 
 
 def _holds_results(entry: Path) -> bool:

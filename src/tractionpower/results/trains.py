@@ -125,7 +125,7 @@ class TrainSummary:
     length_m
         Distance that the train ran [m].
     journey_s, running_s
-        Time from the start to the end, with stops and without [s].
+        Time from the start to the end, with stops and without [s]; both without what lies before the clock or in its warm-up.
     highest_mps, highest_mps_s
         Highest speed at the start of a step [m/s], and when [s after midnight].
     taken_j, returned_j
@@ -162,9 +162,23 @@ def sum_up(
 def train_figures(summary: TrainSummary) -> Iterator[KeyFigure]:
     """Yield the key figures of one train."""
     place, running_s = f"train {summary.train}", summary.running_s
-    yield KeyFigure("length_km", summary.length_m / 1000.0, place, "", "distance run")
-    yield KeyFigure("running_time_s", running_s, place, "", "from start to end, without the time at stops")
-    yield KeyFigure("journey_time_s", summary.journey_s, place, "", "from start to end, stops included")
+    yield KeyFigure(
+        "length_km", summary.length_m / 1000.0, place, "", "distance run, since the start of the clock and its warm-up"
+    )
+    yield KeyFigure(
+        "running_time_s",
+        running_s,
+        place,
+        "",
+        "from start to end, without the time at stops; what lies before the clock or in its warm-up is left out",
+    )
+    yield KeyFigure(
+        "journey_time_s",
+        summary.journey_s,
+        place,
+        "",
+        "from start to end, stops included; what lies before the clock or in its warm-up is left out",
+    )
     mean = summary.length_m / running_s if running_s > 0.0 else 0.0
     yield KeyFigure("mean_speed_kmh", mean * KMH_PER_MPS, place, "", "distance run over the running time")
     when = format_time(summary.highest_mps_s)
@@ -228,7 +242,7 @@ def supply_figures(summary: SupplySummary) -> Iterator[KeyFigure]:
         yield KeyFigure("lowest_10_s_mean_voltage_v", summary.ten_seconds_v, place, when, "lowest sliding mean over 10 s")
     yield from useful_figures(place, summary.current_weighted_v, summary.time_mean_v)
     if np.isfinite(summary.late_s):
-        definition = "computed less planned time at the last call with a planned time"
+        definition = "computed less planned time at the last timed call reached; if another is overdue, the time since it"
         yield KeyFigure("late_at_end_s", summary.late_s, place, "", definition)
 
 

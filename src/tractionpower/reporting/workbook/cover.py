@@ -130,6 +130,8 @@ def _verdicts(facts: Facts) -> Iterator[Said]:
         yield "Verdict", f"All {len(verdicts)} limits are met{known}", "big good"
     else:
         yield "Verdict", "Not all limits could be judged" if verdicts else "No limits were judged", "big doubt"
+    if facts.run.get("status") == "interrupted":
+        yield "", "The run was interrupted: all this holds for the part that was computed.", "doubt"
     for verdict in verdicts:
         yield "", verdict_sentence(verdict), {True: "good", False: "bad"}.get(verdict["met"], "doubt")
 
@@ -141,6 +143,7 @@ def _trust(facts: Facts) -> Iterator[Said]:
     if run.get("trains"):
         stuck = any(train.get("status") == "stuck" for train in run["trains"])
         yield "Trains", _trains(run["trains"]), "bad" if stuck else "wrapped"
+        yield "Timetable", *_timetable(facts)
     for name, ledger in facts.ledgers.items():
         yield _LEDGERS.get(name, name), *_ledger(ledger)
     overlaps = run.get("overlaps") or {}
@@ -161,6 +164,21 @@ def _trust(facts: Facts) -> Iterator[Said]:
         "wrapped",
     )
     yield "Study, input hash", f"{run.get('study', '')}, {run.get('input_hash', facts.scenario.input_hash)}", "wrapped"
+
+
+def _timetable(facts: Facts) -> tuple[str, str]:
+    """Tell how many trains are late or overdue, and which most."""
+    late = sorted((f["value"], f["place"]) for f in facts.results.key_figures if f["name"] == "late_at_end_s")
+    overdue = [str(train["train"]) for train in facts.run["trains"] if train.get("overdue_s")]
+    if not late:
+        return "No call with a planned time.", "wrapped"
+    many = sum(value >= 0.5 for value, _ in late)
+    text = f"{many} of {len(late)} trains are late at their last timed call"
+    text += f", most {late[-1][1]} by {late[-1][0]:.0f} s." if many else "."
+    if overdue:
+        more = f" and {len(overdue) - MOST_NOTES} more" if len(overdue) > MOST_NOTES else ""
+        text += f" Overdue at a call not reached: {', '.join(overdue[:MOST_NOTES])}{more}."
+    return text, "bad" if overdue else "doubt" if many else "good"
 
 
 def _status(run: dict[str, Any]) -> tuple[str, str]:

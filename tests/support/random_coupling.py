@@ -1,0 +1,192 @@
+"""Random lines, supplies and trains together, drawn from a seed."""
+
+from typing import Any
+
+import numpy as np
+from coupled import vehicle
+from random_trains import random_rows
+from small_trains import BRAKE, INVERTER, SERIES_MOTORS, TABLE
+
+from tractionpower.io.limits_files import shipped_limits
+from tractionpower.model.scenario import Scenario
+
+Row = dict[str, Any]
+
+STEPS = 300
+STEPS_S = (0.25, 1.0, 1.0, 2.0, 5.0)
+EFFICIENCIES = [
+    {"speed_kmh": speed, "load_percent": load, "efficiency": 0.9 - 0.1 * (100.0 - load) / 100.0 - 0.0005 * speed}
+    for speed in (0.0, 80.0, 200.0)
+    for load in (0.0, 50.0, 100.0)
+]
+POWERS = [
+    {"voltage_v": volts, "power_kw": kw} for volts, kw in ((2000.0, 600.0), (2700.0, 1800.0), (3000.0, 3000.0), (4000.0, 3000.0))
+]
+
+
+class RandomCoupling:
+    """One random study, a function of the seed alone: `scenario`."""
+
+    def __init__(self, seed: int, steps: int = STEPS) -> None:
+        self.rng = np.random.default_rng((7, seed))
+        rng = self.rng
+        self.length = round(rng.uniform(6.0, 25.0), 3)
+        self.tracks = [str(k + 1) for k in range(rng.integers(1, 4))]
+        self.step_s = float(rng.choice(STEPS_S))
+        self.start = float(rng.choice([0.0, 0.0, 25200.0, 86300.0]))
+        end = self.start + steps * self.step_s
+        vehicles = [self._vehicle(k) for k in range(rng.integers(1, 5))]
+        runs = [self._run(k, [str(each["id"]) for each in vehicles]) for k in range(rng.integers(2, 7))]
+        used = sorted({str(run["train"]) for run in runs})
+        vehicles = [each for each in vehicles if each["id"] in used]
+        self.scenario = Scenario.model_validate(
+            {
+                "line": self._line(),
+                "supply": self._supply(),
+                "clock": {"start": self.start, "end": end, "step_s": self.step_s},
+                "timetable": {"trains": runs},
+                "trains": [self._train(each["id"]) for each in vehicles],
+                "vehicles": vehicles,
+                "limits": shipped_limits(),
+            }
+        )
+
+    def chance(self, share: float) -> bool:
+        return bool(self.rng.random() < share)
+
+    def among(self, low: float, high: float, digits: int = 3) -> float:
+        return round(float(self.rng.uniform(low, high)), digits)
+
+    # -- line and supply
+
+    def _line(self) -> Row:
+        rng, length = self.rng, self.length
+        ends = {"from_km": -1.0, "to_km": length + 1.0}
+        slopes = random_rows(rng, length, int(rng.integers(1, 8)), lambda: self.among(-15.0, 12.0, 2))
+        speeds = random_rows(rng, length, int(rng.integers(1, 6)), lambda: self.among(30.0, 150.0, 0))
+        low, high = np.sort(np.round(rng.uniform(0.0, length, 2), 3)).tolist()
+        line: Row = {
+            "tracks": [ends | {"id": track} for track in self.tracks],
+            "stations": [{"id": f"s{k}", "km": round(k * length / 4, 3)} for k in range(5)],
+            "gradients": [{"from_km": a, "to_km": b, "permille": slope} for a, b, slope in slopes],
+            "speed_limits": [{"from_km": a, "to_km": b, "kmh": kmh} for a, b, kmh in speeds],
+            "curves": [{"from_km": low, "to_km": high + 0.1, "radius_m": self.among(200.0, 900.0)}],
+            "tunnels": [{"from_km": 0.5 * low, "to_km": low + 0.3, "kind": "double_track"}],
+        }
+        if self.chance(0.3):
+            limit = {"max_current_a": self.among(300.0, 900.0), "standstill_current_a": self.among(20.0, 200.0)}
+            line["train_current_limits"] = [{"from_km": low, "to_km": high + 0.2} | limit]
+        return line
+
+    def _supply(self) -> Row:
+        rng, length = self.rng, self.length
+        ends = {"from_km": -1.0, "to_km": length + 1.0}
+        middle = self.among(0.2, length - 0.2)
+        contact = [
+            {"from_km": low, "to_km": high, "resistance_ohm_per_km": self.among(0.02, 0.1)}
+            for low, high in ((-1.0, middle), (middle, length + 1.0))
+        ]
+        common = ends | {"resistance_ohm_per_km": self.among(0.0, 0.03)}
+        returns = [common] if self.chance(0.6) else [common | {"tracks": [track]} for track in self.tracks]
+        supply: Row = {
+            "substations": [self._substation(k) for k in range(rng.integers(1, 5))],
+            "section_cabins": [],
+            "contact_lines": contact,
+            "return_circuit": returns,
+            "loads": [self._load(k) for k in range(rng.integers(0, 4))] if self.chance(0.4) else [],
+        }
+        if len(self.tracks) > 1 and self.chance(0.7):
+            state = str(rng.choice(["closed", "closed", "bypassed"]))
+            supply["section_cabins"] = [{"id": "C", "km": self.among(0.0, length), "state": state}]
+        return supply
+
+    def _substation(self, k: int) -> Row:
+        rng = self.rng
+        return {
+            "id": f"S{k}",
+            "km": self.among(0.0, self.length),
+            "no_load_voltage_v": float(rng.choice([3300.0, 3600.0, self.among(2700.0, 3600.0, 1)])),
+            "internal_resistance_ohm": self.among(0.03, 0.4),
+            "conducts": "both" if self.chance(0.2) else "forward",
+            "state": "in_service" if k == 0 or self.chance(0.75) else str(rng.choice(["rectifiers_out", "bypassed"])),
+            "feeder_resistance_ohm": 0.0 if self.chance(0.5) else self.among(0.001, 0.05),
+        }
+
+    def _load(self, k: int) -> Row:
+        begin = self.start + self.among(0.0, 200.0, 0)
+        power = {"power_kw": self.among(-800.0, 1500.0)} if self.chance(0.7) else {"current_a": self.among(-100.0, 300.0)}
+        place = {"id": f"L{k}", "track": str(self.rng.choice(self.tracks)), "km": self.among(0.0, self.length)}
+        return place | power | ({"from": begin, "to": begin + 100.0} if self.chance(0.5) else {})
+
+    # -- trains
+
+    def _vehicle(self, k: int) -> Row:
+        kind = str(self.rng.choice(["inverter", "inverter", "series_motors", "table"]))
+        more = {"inverter": self._inverter, "series_motors": self._motors, "table": self._table}[kind]()
+        heating = {"heating_kw": self.among(0.0, 300.0), "heating": str(self.rng.choice(["resistive", "constant_power"]))}
+        return vehicle(
+            f"v{k}",
+            kind,
+            mass_t=self.among(90.0, 600.0),
+            length_m=self.among(20.0, 400.0),
+            rotating_mass_factor=self.among(1.0, 1.2),
+            max_speed_kmh=self.among(60.0, 160.0, 0),
+            auxiliaries={} if self.chance(0.15) else {"power_kw": self.among(0.0, 150.0)} | heating,
+            **more,
+        )
+
+    def _inverter(self) -> Row:
+        drive: Row = INVERTER | {"max_current_a": self.among(400.0, 1500.0)}
+        if self.chance(0.2):
+            drive = {key: value for key, value in drive.items() if key != "efficiency"} | {"efficiency_map": EFFICIENCIES}
+        elif self.chance(0.2):
+            drive |= {"power_over_voltage": POWERS}
+        if self.chance(0.3):
+            drive |= {"pull_out_kmh": 90.0}
+        brake = BRAKE | {"rheostat_kw": float(self.rng.choice([0.0, 500.0, 3000.0]))}
+        brake |= {"electric_above_kmh": self.among(0.0, 20.0), "regenerates": self.chance(0.8)}
+        if self.chance(0.5):
+            brake |= {"electric_effort_kn": 180.0, "electric_power_kw": 4000.0}
+        return {"drive": drive, "brake": brake}
+
+    def _motors(self) -> Row:
+        drive: Row = SERIES_MOTORS | {"notch_time_s": self.among(0.0, 3.0)}
+        if self.chance(0.4):
+            drive |= {"relay": {"off_v": 2200.0, "on_v": 2400.0, "delay_s": self.among(0.0, 3.0)}}
+        if self.chance(0.3):
+            drive |= {"max_current_a": self.among(300.0, 700.0), "knee_factor": 0.9}
+        return {"drive": drive}
+
+    def _table(self) -> Row:
+        return {"drive": TABLE | ({"max_current_a": self.among(500.0, 1100.0)} if self.chance(0.5) else {})}
+
+    def _train(self, name: str) -> Row:
+        shape = "point" if self.chance(0.2) else "uniform"
+        return {"id": name, "vehicles": [{"id": name}], "mass_distribution": shape}
+
+    def _run(self, k: int, trains: list[str]) -> Row:
+        rng = self.rng
+        places = [round(n * self.length / 4, 3) for n in range(5)]
+        first, last = np.sort(rng.choice(5, 2, replace=False)).tolist()
+        order = list(range(first, last + 1))
+        if self.chance(0.5):
+            order.reverse()
+        begins_at_speed = self.chance(0.3)
+        calls: list[Row] = []
+        for n in order:
+            how = rng.random()
+            if how < 0.4 and not (n == order[0] and begins_at_speed):
+                calls.append({"station": f"s{n}", "min_dwell_s": self.among(0.0, 40.0, 1)})
+            elif how < 0.6:
+                calls.append({"station": f"s{n}", "stops": False})
+        end = str(rng.choice(["leave", "stop", "stay"]))
+        begin = self.start + self.among(-100.0, 0.5 * STEPS * self.step_s)
+        speed = {"speed_kmh": self.among(0.0, 28.0)} if begins_at_speed else {}
+        return {
+            "id": f"T{k}",
+            "train": str(rng.choice(trains)),
+            "route": [{"track": str(rng.choice(self.tracks)), "from_km": places[order[0]], "to_km": places[order[-1]]}],
+            "start": {"time": max(begin, 0.0)} | speed,
+            "calls": calls,
+            "end": end,
+        }
