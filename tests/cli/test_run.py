@@ -58,7 +58,7 @@ def test_a_shipped_line_in_an_empty_folder(tmp_path, capsys):
     assert {path.name for path in folder.iterdir()} == written
     assert Results.open(folder).run["status"] == "complete"
     assert all(path.stat().st_size > 1000 for path in (folder / "figures").iterdir())
-    for word in ("highest current [A]", "lowest voltage", "met", "electric ledger closes"):
+    for word in ("highest", "energy", "lowest voltage", "met", "trains: 4 left the line", "electric ledger closes"):
         assert word in told.out
     assert f"results: {Path('reports') / 'two-substations'}" in told.err
     assert f"report: {Path('reports') / 'two-substations' / 'report.xlsx'}" in told.err

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from fake_journeys import make_journey, make_line
 
-from tractionpower.cosimulation.calls import call_rows, late_at_end, time_at_stops
+from tractionpower.cosimulation.calls import call_rows, late_at_end, overdue_by, time_at_stops
 from tractionpower.results.trains import CallRow
 from tractionpower.studies.journeys import route_end
 
@@ -65,5 +65,11 @@ def test_time_at_stops_counts_from_when_the_train_is_on_the_line():
 
 def test_late_at_the_end_is_that_of_the_last_call_with_a_time():
     rows = [CallRow("7", "A", "departure", 10.0, 15.0), CallRow("7", "B", "arrival", 60.0, 61.0), CallRow("7", "C", "pass")]
-    assert late_at_end(rows) == 1.0
-    assert np.isnan(late_at_end(rows[2:]))
+    assert late_at_end(rows, 100.0) == 1.0
+    assert np.isnan(late_at_end(rows[2:], 100.0))
+
+
+def test_a_call_that_is_not_reached_in_time_counts_as_late():
+    rows = [CallRow("7", "A", "departure", 10.0, 10.0), CallRow("7", "B", "arrival", 60.0), CallRow("7", "C", "arrival", 90.0)]
+    assert [overdue_by(rows, end) for end in (50.0, 60.0, 75.0, 100.0)] == [0.0, 0.0, 15.0, 40.0]
+    assert [late_at_end(rows, end) for end in (50.0, 75.0)] == [0.0, 15.0]

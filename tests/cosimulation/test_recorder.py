@@ -152,8 +152,10 @@ def test_a_run_at_constant_voltage_says_what_it_leaves_out():
     told = results.run["ledgers"]["pantograph_to_wheel"]
     assert results.run["coupling"] == "constant_voltage"
     assert told["closes"]
-    left_out = ((rows["voltage_v"].astype(float) - 2900.0) * rows["current_a"]).sum() / 3.6e6
-    assert told["coupling_kwh"] == pytest.approx(left_out, rel=1e-5)
+    reckoned = results.table("trains")["current_a"].astype(float) * 2900.0
+    assert (rows["voltage_v"] < 3600.0).mean() > 0.95  # where the line folds nothing back, the currents are those reckoned
+    left_out = (rows["voltage_v"].astype(float) * rows["current_a"] - reckoned).sum() / 3.6e6
+    assert told["coupling_kwh"] == pytest.approx(left_out, rel=2e-3)
     assert abs(left_out) > 1.0
     assert told["line_kwh"] == pytest.approx((rows["voltage_v"].astype(float) * rows["current_a"]).sum() / 3.6e6, rel=1e-5)
 

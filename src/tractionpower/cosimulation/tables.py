@@ -22,9 +22,10 @@ ROUNDING_S = 5e-7
 
 @dataclass(frozen=True, slots=True, order=True)
 class Way:
-    """A part of a route within one span: its start on the route [m], the stretch, and where in the span it begins [m]."""
+    """A part of a route within one span: its ends on the route [m], the stretch, and where in the span it begins [m]."""
 
     from_m: float
+    to_m: float
     sign: int
     x_m: float
     stretch: Stretch = field(compare=False)
@@ -72,7 +73,7 @@ def lay_ways(path: RoutePath, stretches: Iterable[Stretch]) -> list[Way]:
             if item.track == leg.axis.track and low < high:
                 enters = low if leg.sign > 0 else high
                 from_m = leg.start_m + leg.sign * (enters - leg.from_track_m)
-                ways.append(Way(from_m, leg.sign, enters - item.from_m, item))
+                ways.append(Way(from_m, from_m + high - low, leg.sign, enters - item.from_m, item))
     return sorted(ways)
 
 

@@ -157,7 +157,7 @@ class TrainRecorder:
         for spells in self.spells.values():
             spells.add(time_s, train, volts, self.step_s)
         zone = self.places.zone(placed)
-        self.useful.add(train, zone, volts, rows["current_a"], rows["traction_n"] > 0.0, rows["on_line_s"])
+        self.useful.add(train, zone, volts, rows["current_a"], rows["traction_n"] > 0.0, self.step_s)
         bins = self.places.bin(placed)
         add_by_group(self._bin_v, bins, np.stack([volts, np.ones(len(volts))], axis=1))
         np.minimum.at(self._bin_lowest, bins, volts)

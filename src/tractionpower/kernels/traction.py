@@ -11,8 +11,8 @@ from tractionpower.kernels.train_tables import (
     BY_NOTHING,
     BY_VOLTAGE,
     INVERTER,
+    NO_DRIVE,
     SERIES_MOTORS,
-    TABLE,
 )
 
 AS_WISHED, BY_TABLE, AT_FULL, AT_LIMIT = 0, 1, 2, 8
@@ -66,24 +66,22 @@ def traction(tables, train, mover, need_w, lines, midpoint):
         if power >= need_w:
             power, piece = need_w, AS_WISHED
         return power, power / u, 0.0, by, piece
-    power, current, resistor, piece, set_by = need_w, 0.0, 0.0, AS_WISHED, by
+    if train.drive == NO_DRIVE:
+        return 0.0, 0.0, 0.0, by, AS_WISHED
+    power, resistor, piece, set_by = need_w, 0.0, AS_WISHED, by
     if train.drive == SERIES_MOTORS:
         notch = tables.notches[train.first_notch + mover.notch]
         current, most, resistor = at_full(tables, notch, u, midpoint)
         if need_w < most * (1.0 - FULL):
             current, resistor = at_part(tables, train, mover, u, need_w, midpoint)
-        else:
-            power, piece = min(most, need_w), AT_FULL
-            if current <= free:
-                by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
-    elif train.drive == TABLE:
+    else:
         current, most = _table_at(tables, train, u, midpoint)
         if need_w < most * (1.0 - FULL):
             current *= need_w / most
-        else:
-            power, piece = min(most, need_w), AT_FULL
-            if current <= free:
-                by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
+    if need_w >= most * (1.0 - FULL):
+        power, piece = min(most, need_w), AT_FULL
+        if current <= free:
+            by = BY_VOLTAGE if u < train.nominal_v else BY_DRIVE
     if current > free:  # the drive takes turns with off
         share = free / current
         return power * share, free, resistor * share, by, AT_LIMIT + set_by

@@ -24,7 +24,7 @@ from tractionpower.movement.telling import doubt, item_paths, listed
 from tractionpower.movement.timetable_checks import check_clock
 
 SHARED = ("cannot_start", "no_contact_line", "no_drive", "no_traction", "turns_round", "weak_brake")
-"""Warnings that are told once for all runs of which they are true in the same words."""
+"""Problems that are told once for all runs of which they are true in the same words."""
 
 
 def check_movement(scenario: Scenario) -> list[Problem]:
@@ -95,13 +95,13 @@ def _longest_m(scenario: Scenario, vehicles: dict[str, Vehicle]) -> float:
 
 
 def _share(told: Iterable[tuple[str, Problem]]) -> list[Problem]:
-    """Return the problems of runs, warnings that several runs share as one with their names."""
+    """Return the problems of runs, those that several runs share as one with their names."""
     kept: list[Problem] = []
     owners: dict[int, list[str]] = {}
     first: dict[tuple[str, str], int] = {}
     for run, problem in told:
         key = (problem.code, problem.found)
-        if problem.severity == "warning" and problem.code in SHARED and key in first:
+        if problem.code in SHARED and key in first:
             owners[first[key]].append(run)
             continue
         first[key] = len(kept)

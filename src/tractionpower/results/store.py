@@ -44,10 +44,6 @@ PARTIAL = "partial"
 _PART = re.compile(r"(\w+)-(\d+)\.parquet")
 
 
-REPORTS = ("report.xlsx", "report.new.xlsx", "figures", PARTIAL)
-"""What reports of a run are called."""
-
-
 class RunWriter:
     """Writes one run into a folder.
 
@@ -127,19 +123,9 @@ class RunWriter:
                 for stale in earlier - {*complete["files"], last, *(path.name for path in self.held)}:
                     with suppress(OSError):  # not named by run.json, so no part of the results
                         (self.folder / stale).unlink()
-                self._remove_reports()
+                shutil.rmtree(self.folder / PARTIAL, ignore_errors=True)  # reports of a part of a run that is whole now
                 shutil.rmtree(self.folder / RUNNING, ignore_errors=True)
         return complete
-
-    def _remove_reports(self) -> None:
-        """Remove what was reported of the run before: beside the new tables it would be taken for theirs."""
-        for name in REPORTS:
-            path = self.folder / name
-            if path.is_dir():
-                shutil.rmtree(path, ignore_errors=True)
-            else:
-                with suppress(OSError):  # not there, or open in another program
-                    path.unlink()
 
     def discard(self) -> None:
         """Leave no trace: nothing was computed."""

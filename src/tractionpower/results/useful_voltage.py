@@ -53,7 +53,7 @@ class UsefulVoltage:
         tractive
             Whether the train exerts traction effort.
         weight_s
-            How much of the step the train was on the line [s], or one value for all.
+            Length of the steps [s], or one value for all; a step in which a train comes or goes counts in full.
         """
         zones = self._shape[1]
         cell = np.asarray(train, np.int64) * zones + np.where(np.asarray(zone) < 0, zones - 1, zone)

@@ -21,6 +21,7 @@ KNOWN_AS = {
 """How the value of a limit is known, by its status."""
 
 STATES = {
+    "before": "left before the clock",
     "left": "left the line",
     "stays": "stays at its end",
     "on_line": "still on the line at the end",
