@@ -104,16 +104,17 @@ RUN_JSON = {
     "step_s, start_s, end_s": "the clock [s]; of an interrupted run, the end of what was computed",
     "coupling": "`full` or `constant_voltage`; then also `coupling_voltage_v`, the voltage [V]",
     "versions": "tractionpower and the packages that results can depend on",
-    "wall_seconds, compile_seconds": "time of the run, and of what lies before it: checks, tables, kernels that had to be compiled [s]",
+    "wall_seconds, compile_seconds": "time of the run, and of checks, tables, compilation before it [s]",
     "steps, flagged_steps": "steps computed, and those that did not converge or could not be served",
     "worst_residual_a, residual_limit_a": "largest imbalance of a node in any step, and the one from which a step is flagged [A]",
     "mean_iterations": "solutions of the linear network in a step, mean",
     "ledgers": "`electric`, `mechanical`, `pantograph_to_wheel`: `closes`, worst gap, energies [kWh]; formulas: docs/model.md",
     "verdicts": "found values against limits, below",
     "overlaps": "pairs of trains that stood in each other: `count`, and in words which",
-    "trains": "each with `status`, `entered_s`, `finished_s`, `distance_m`, `overdue_s` at a call not reached; status: `left` the "
-    "line, `before` the clock even, `stays` at its end, `on_line` at the end of the clock, `stuck` there (for a minute or more its "
-    "effort has not moved it), `outside`: never came",
+    "trains": "each with `status`, `entered_s`, `finished_s`, `distance_m`, `overdue_s` at a call not reached; "
+    "status: `left` "
+    "the line, `before` the clock even, `stays` at its end, `on_line` at the end of the clock, `stuck` there (for a minute or more "
+    "its effort has not moved it), `outside`: never came",
     "notes": "what a reader has to know: constant voltage, trains that are stuck",
     "files": "size and SHA-256 of every file",
 }
