@@ -61,7 +61,7 @@ def _action(arguments: list[str]) -> Action:
 
 def _run_study(folder: Path, out: str) -> tuple[float, float]:
     environment = os.environ | {"TRACTIONPOWER_CACHE_DIR": str(folder / "cache")}
-    command = [sys.executable, "-m", "tractionpower", "run", STUDY, "--out", str(folder / out)]
+    command = [sys.executable, "-m", "tractionpower", "run", STUDY, "--no-reports", "--out", str(folder / out)]
     start, used = perf_counter(), _processor_s()
     subprocess.run(command, check=True, capture_output=True, text=True, cwd=folder, env=environment, timeout=LONGEST_S)
     return perf_counter() - start, _processor_s() - used

@@ -112,9 +112,8 @@ RUN_JSON = {
     "verdicts": "found values against limits, below",
     "overlaps": "pairs of trains that stood in each other: `count`, and in words which",
     "trains": "each with `status`, `entered_s`, `finished_s`, `distance_m`, `overdue_s` at a call not reached; "
-    "status: `left` "
-    "the line, `before` the clock even, `stays` at its end, `on_line` at the end of the clock, `stuck` there (for a minute or more "
-    "its effort has not moved it), `outside`: never came",
+    "status: `left` the line, `before` the clock even, `stays` at its end, `on_line` at the end of the clock, `stuck` there (its "
+    "effort has not moved it for a minute or more), `outside`: never came",
     "notes": "what a reader has to know: constant voltage, trains that are stuck",
     "files": "size and SHA-256 of every file",
 }

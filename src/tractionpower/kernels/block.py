@@ -51,12 +51,11 @@ def advance(tables, state, buffers, until_step):
         changed = _switch_loads(tables, state, t)
         ask_line(tables, state, t)
         if changed or progress.stale or progress.active > 0 or not progress.solved:
-            _solve_step(tables, state, progress.solved)
-            for _ in range(MOST_REVISIONS):
-                if not revise_braking(tables, state, t):
+            for revision in range(1 + MOST_REVISIONS):
+                _solve_step(tables, state, progress.solved)
+                progress.solved, progress.stale = True, False
+                if revision == MOST_REVISIONS or not revise_braking(tables, state, t):
                     break
-                _solve_step(tables, state, True)
-            progress.solved, progress.stale = True, False
         else:
             state.result[0].iterations = 0
         state.result[0].trains = progress.active

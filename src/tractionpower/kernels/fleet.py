@@ -118,15 +118,14 @@ def answer_trains(tables, state, t, rows, used):
         port = tables.network.ports[tables.fleet[k].port]
         u = state.work.ports[tables.fleet[k].port].u if port.start_v > 0.0 else 0.0
         i, row = port_current(tables.network.segments, port, u), rows[used]
+        at, own, served = u, i, port.scale
         if fixed_v > 0.0 and port.start_v > 0.0:
             train, trial, demand = tables.trains.trains[k], state.trains.trials[k], state.trains.demands[k]
+            at, served = fixed_v, 1.0
             own, _ = demand_current(tables.trains, train, trial, demand, fixed_v)
-            settle(tables.trains, state.trains, k, (t, tables.clock[1]), (fixed_v, own, 1.0), row)
-            row.coupling_w = u * i - fixed_v * own
-            row.voltage_v, row.current_a, row.power_w, row.returned_w = u, i, u * i, max(-u * i, 0.0)
-        else:
-            settle(tables.trains, state.trains, k, (t, tables.clock[1]), (u, i, port.scale), row)
-            row.coupling_w = 0.0
+        settle(tables.trains, state.trains, k, (t, tables.clock[1]), (at, own, served), row)
+        row.coupling_w = u * i - at * own
+        row.voltage_v, row.current_a, row.power_w, row.returned_w = u, i, u * i, max(-u * i, 0.0)
         used += 1
         state.active[stay] = k
         if state.trains.movers[k].status != GONE:

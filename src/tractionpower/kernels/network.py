@@ -293,16 +293,15 @@ def solve(network, work, warm):
         return (CONVERGED if worst <= FLAG_A else NOT_CONVERGED), iterations, worst, 1.0, -1
     for k in range(work.in_service[0]):
         work.ports[work.order[k]].full_scale = network.ports[work.order[k]].scale
-    low, high = 0.0, 1.0
-    while high - low > 1e-7:
-        middle = 0.5 * (low + high)
-        _cut_demand(network, work, middle)
+    low, high, found = 0.0, 1.0, False
+    while not found:
+        found = high - low <= 1e-7  # then once more, for the solution itself
+        factor = low if found else 0.5 * (low + high)
+        _cut_demand(network, work, factor)
         more, worst = solve_cold(network, work)
         iterations += more
         if worst <= 2.0 * TOLERANCE_A and find_unserved(network, work) < 0:  # just beyond the fold it is small, too
-            low = middle
+            low = factor
         else:
-            high = middle
-    _cut_demand(network, work, low)
-    more, worst = solve_cold(network, work)
-    return NOT_SERVABLE, iterations + more, worst, low, unserved
+            high = factor
+    return NOT_SERVABLE, iterations, worst, factor, unserved
