@@ -112,7 +112,9 @@ def test_every_phase_has_a_colour_of_its_own_and_the_band_covers_the_run(data):
 def test_a_train_without_any_voltage_is_drawn(data):
     name, rows = next(data.rows_of("trains", "train"))
     rows = rows.assign(voltage_v=np.nan, current_a=np.nan)
-    train_figure(ride_of(data, name, rows), data).canvas.draw()
+    figure = train_figure(ride_of(data, name, rows), data)
+    figure.canvas.draw()
+    assert any(len(line.get_xdata()) == len(rows) for axes in figure.axes for line in axes.lines)  # its speed is there
 
 
 def test_of_many_trains_those_with_the_lowest_voltages_and_the_highest_currents_are_shown():
