@@ -88,7 +88,7 @@ class Journey:
 
     def ledgers(self) -> dict[str, TrainLedger]:
         """Return the mechanical ledger and that from pantograph to wheel."""
-        mechanical = mechanical_ledger(self.rows, self.seconds, self.formation, self.path)
+        mechanical = mechanical_ledger(self.rows, self.seconds, self.end_mps, self.formation, self.path)
         return {"mechanical": mechanical, "pantograph_to_wheel": pantograph_ledger(self.rows, self.seconds)}
 
 

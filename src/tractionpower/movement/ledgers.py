@@ -116,9 +116,10 @@ def pantograph_parts(rows: NDArray[np.void], seconds: Floats) -> dict[str, Float
     return {name: power * seconds for name, power in named.items()}
 
 
-def mechanical_ledger(rows: NDArray[np.void], seconds: Floats, mass: Formation, path: RoutePath) -> TrainLedger:
-    """Return the mechanical ledger of one train; parameters as of `mechanical_parts`."""
-    return TrainLedger(_sums(mechanical_parts(rows, seconds, mass, path)), MECHANICAL_SHARE)
+def mechanical_ledger(rows: NDArray[np.void], seconds: Floats, end_mps: float, mass: Formation, path: RoutePath) -> TrainLedger:
+    """Return the mechanical ledger of one train that ends at the speed `end_mps` [m/s]; the rest as of `mechanical_parts`."""
+    kinetic = 0.5 * mass.inertia_kg * (end_mps**2 - float(rows["v_mps"][0]) ** 2)  # without the rounding of all its changes
+    return TrainLedger(_sums(mechanical_parts(rows, seconds, mass, path)) | {"kinetic": kinetic}, MECHANICAL_SHARE)
 
 
 def pantograph_ledger(rows: NDArray[np.void], seconds: Floats) -> TrainLedger:
