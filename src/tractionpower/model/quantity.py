@@ -22,6 +22,8 @@ UNITS: dict[str, str] = {
     "n_per_kmh2": "N/(km/h)²",
     "n_per_kmh": "N/(km/h)",
     "vs_per_rev": "V s/rev",
+    "s_per_km": "S/km",
+    "a_per_km": "A/km",
     "per_km": "1/km",
     "percent": "%",
     "permille": "‰",
@@ -33,12 +35,15 @@ UNITS: dict[str, str] = {
     "km": "km",
     "kw": "kW",
     "pu": "p.u.",
+    "mm2": "mm²",
+    "ma_per_m": "mA/m",
     "s": "s",
     "m": "m",
     "v": "V",
     "a": "A",
     "t": "t",
     "n": "N",
+    "c": "°C",
 }
 
 

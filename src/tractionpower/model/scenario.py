@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from tractionpower.model.base import Count, Declaration, Format, Real, Text, TimeOfDay
+from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.quantity import field
@@ -42,6 +43,9 @@ class Output(Declaration):
 
     every_s: Real | None = field("every_s", "Interval of the rows; left out: every step.", above=0, default=None)
     tables: tuple[Text, ...] | None = Field(default=None, description="Tables to write; left out: all.")
+    rails_every_s: Real = field(
+        "rails_every_s", "Interval of the rows of table rails, whose places are many.", above=0, default=60.0
+    )
 
 
 class StudyFile(Declaration):
@@ -61,6 +65,13 @@ class StudyFile(Declaration):
     )
     seed: Count = Field(default=1, ge=0, description="Seed of everything that is drawn.")
     limits: Text | None = Field(default=None, description="CSV file that overlays the shipped limits row by row.")
+    conductors: Text | None = Field(default=None, description="CSV file that overlays the shipped conductors row by row.")
+    coast_without_voltage_s: Real = field(
+        "coast_without_voltage_s",
+        "How long a train on a dead contact line coasts before it brakes to a stand.",
+        at_least=0,
+        default=120.0,
+    )
     output: Output = Field(default=Output(), description="What a run writes.")
 
 
@@ -81,6 +92,8 @@ class Scenario(Declaration):
     coupling_voltage_v: Real | None = None
     seed: Count = 1
     limits: tuple[Limit, ...]
+    conductors: tuple[Conductor, ...] = ()
+    coast_without_voltage_s: Real = 120.0
     output: Output = Output()
 
     @property

@@ -7,17 +7,21 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from tractionpower.model.base import Declaration, Format, Identifier, Real, TimeOfDay, Tracks
+from tractionpower.model.base import Count, Declaration, Format, Identifier, Real, TimeOfDay, Tracks
+from tractionpower.model.earthing import Bonds, Earthing, VoltageLimitingDevice
 from tractionpower.model.line import Stretch
 from tractionpower.model.quantity import field
+from tractionpower.model.switchgear import Feeder, Protection, Switch, SwitchEvent
 
 _ALL_TRACKS = "Tracks it belongs to; left out: all tracks that exist there."
 
 
-class Substation(Declaration):
+class Substation(Protection):
     """A traction substation, given by its no-load voltage and internal resistance.
 
-    With k equal units in service the no-load voltage stays; `internal_resistance_ohm` is that of the whole plant.
+    With k of its n equal rectifier units in service the no-load voltage stays and the resistance is R_unit/k + R_grid:
+    `internal_resistance_ohm` is that of the whole plant with all units, ``R_unit/n + R_grid``. The overcurrent trip is
+    that of each of its feeders.
     """
 
     id: Identifier = Field(description="Identifier of the substation.")
@@ -25,6 +29,14 @@ class Substation(Declaration):
     no_load_voltage_v: Real = field("no_load_voltage_v", "Voltage of the busbar without load.", above=0, at_most=10_000)
     internal_resistance_ohm: Real = field(
         "internal_resistance_ohm", "Slope of the external characteristic, (E - U)/I.", above=0, at_most=10
+    )
+    units: Count = Field(default=1, ge=1, description="Number of equal rectifier units.")
+    units_in_service: Count | None = Field(default=None, ge=0, description="How many of them feed; left out: all.")
+    grid_resistance_ohm: Real = field(
+        "grid_resistance_ohm",
+        "Part of the internal resistance that the feeding grid causes and that no unit shares.",
+        at_least=0,
+        default=0.0,
     )
     conducts: Literal["forward", "both"] = Field(
         default="forward", description="forward: diode rectifier; both: a two-way linear source."
@@ -58,14 +70,36 @@ class Substation(Declaration):
     )
     tracks: Tracks | None = Field(default=None, description=_ALL_TRACKS)
 
+    @model_validator(mode="after")
+    def _units(self) -> Substation:
+        if self.units_in_service is not None and self.units_in_service > self.units:
+            raise PydanticCustomError("units", "units_in_service is more than units")
+        if self.grid_resistance_ohm >= self.internal_resistance_ohm:
+            raise PydanticCustomError("grid_resistance", "grid_resistance_ohm is not below internal_resistance_ohm")
+        return self
 
-class SectionCabin(Declaration):
-    """A section cabin (paralleling post): joins contact lines of several tracks, never rails."""
+    @property
+    def feeds(self) -> bool:
+        """Whether a rectifier unit is in service."""
+        return self.state == "in_service" and self.units_in_service != 0
+
+
+class SectionCabin(Protection):
+    """A section cabin (paralleling post): joins contact lines of several tracks, never rails.
+
+    The overcurrent trip is that of the breaker of each of its feeders.
+    """
 
     id: Identifier = Field(description="Identifier of the section cabin.")
     km: Real = field("km", "Place of the section cabin.")
     state: Literal["closed", "bypassed", "open"] = Field(
         default="closed", description="closed: all tracks tied; bypassed: each track through, no tie; open: each track cut here."
+    )
+    feeder_resistance_ohm: Real = field(
+        "feeder_resistance_ohm",
+        "Resistance of each feeder from the busbar to the contact line, one per track and side.",
+        at_least=0,
+        default=0.0,
     )
     tracks: Tracks | None = Field(default=None, description=_ALL_TRACKS)
 
@@ -79,25 +113,86 @@ class SectionPoint(Declaration):
     state: Literal["open", "closed"] = Field(default="open", description="open: the contact line is cut here.")
 
 
-class ContactLine(Stretch):
-    """Contact line: the resistance of each listed track."""
+class Wire(Declaration):
+    """Equal wires of a contact line, in parallel with the others."""
 
-    resistance_ohm_per_km: Real = field(
-        "resistance_ohm_per_km", "Resistance of the contact line of one track.", above=0, at_most=10
+    conductor: Identifier = Field(description="Type of the wire, by the conductors table.")
+    count: Count = Field(default=1, ge=1, description="Number of such wires.")
+    use: Literal["contact", "messenger", "feeder"] = Field(description="Contact wire, messenger wire or reinforcing feeder.")
+    wear_percent: Real | None = field(
+        "wear_percent",
+        "Lost part of the cross-section; left out: that of the contact line for contact wires, else none.",
+        at_least=0,
+        at_most=60,
+        default=None,
+    )
+
+
+class ContactLine(Stretch):
+    """Contact line of each listed track: by its resistance, by a type of the conductors table, or by its wires."""
+
+    resistance_ohm_per_km: Real | None = field(
+        "resistance_ohm_per_km", "Resistance of the contact line of one track.", above=0, at_most=10, default=None
+    )
+    type: Identifier | None = Field(default=None, description="Type of contact line, by the conductors table.")
+    wires: tuple[Wire, ...] | None = Field(default=None, min_length=1, description="Wires in parallel.")
+    wear_percent: Real | None = field(
+        "wear_percent", "Lost part of the cross-section of the contact wires.", at_least=0, at_most=60, default=None
+    )
+    temperature_c: Real | None = field(
+        "temperature_c", "Temperature of the wires; left out: 20 °C.", at_least=-50, at_most=200, default=None
     )
     tracks: Tracks | None = Field(default=None, description=_ALL_TRACKS)
 
+    @model_validator(mode="after")
+    def _one_way(self) -> ContactLine:
+        given = [self.resistance_ohm_per_km is not None, self.type is not None, self.wires is not None]
+        if sum(given) != 1:
+            raise PydanticCustomError("contact_line", "a contact line has one of resistance_ohm_per_km, type, wires")
+        return self
+
 
 class ReturnCircuit(Stretch):
-    """Return rails: one conductor for all listed tracks together."""
+    """Return rails: one conductor for all listed tracks together, by its resistance or by the type of rail."""
 
-    resistance_ohm_per_km: Real = field(
+    resistance_ohm_per_km: Real | None = field(
         "resistance_ohm_per_km",
         "Resistance of all rails of the listed tracks in parallel; zero is allowed.",
         at_least=0,
         at_most=10,
+        default=None,
+    )
+    rail: Identifier | None = Field(
+        default=None, description="Type of rail, by the conductors table; two rails for each listed track."
+    )
+    wear_percent: Real = field(
+        "wear_percent", "Lost part of the cross-section of the rails.", at_least=0, at_most=60, default=0.0
+    )
+    temperature_c: Real | None = field(
+        "temperature_c", "Temperature of the rails; left out: 20 °C.", at_least=-50, at_most=100, default=None
+    )
+    leakage_s_per_km: Real = field(
+        "leakage_s_per_km",
+        "Conductance to remote earth of all rails of the listed tracks together.",
+        at_least=0,
+        at_most=1000,
+        default=0.0,
     )
     tracks: Tracks | None = Field(default=None, description="Tracks that share this one conductor; left out: all tracks.")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> ReturnCircuit:
+        if (self.resistance_ohm_per_km is None) == (self.rail is None):
+            raise PydanticCustomError("return_circuit", "a return circuit has either resistance_ohm_per_km or rail")
+        return self
+
+
+class LoadPoint(Declaration):
+    """A value of a load's profile, which holds until the next one."""
+
+    time: TimeOfDay = Field(description="From when.")
+    power_kw: Real | None = field("power_kw", "Power taken from the line from then on.", default=None)
+    current_a: Real | None = field("current_a", "Current taken from the line from then on.", default=None)
 
 
 class Load(Declaration):
@@ -108,6 +203,11 @@ class Load(Declaration):
     km: Real = field("km", "Place of the tap.")
     power_kw: Real | None = field("power_kw", "Power taken from the line; negative feeds back.", default=None)
     current_a: Real | None = field("current_a", "Current taken from the line; negative feeds back.", default=None)
+    profile: tuple[LoadPoint, ...] | None = Field(
+        default=None,
+        min_length=1,
+        description="Power or current over the time of day, instead of one value; zero before the first.",
+    )
     limits: Literal["range", "none"] = Field(
         default="range",
         description="range: as given between U_min2 and U_max2, below linear to zero, feeding back folds to zero at U_max2;"
@@ -125,8 +225,8 @@ class Load(Declaration):
 
     @model_validator(mode="after")
     def _power_or_current(self) -> Load:
-        if (self.power_kw is None) == (self.current_a is None):
-            raise PydanticCustomError("power_or_current", "a load has either power_kw or current_a")
+        if sum(value is not None for value in (self.power_kw, self.current_a, self.profile)) != 1:
+            raise PydanticCustomError("power_or_current", "a load has one of power_kw, current_a, profile")
         if self.from_ is not None and self.to is not None and not self.from_ < self.to:
             raise PydanticCustomError("times", "from is not before to")
         return self
@@ -142,4 +242,12 @@ class Supply(Declaration):
     section_points: tuple[SectionPoint, ...] = Field(default=(), description="Section insulators and isolators.")
     contact_lines: Annotated[tuple[ContactLine, ...], Field(min_length=1, description="Contact lines.")]
     return_circuit: Annotated[tuple[ReturnCircuit, ...], Field(min_length=1, description="Return conductors.")]
+    feeders: tuple[Feeder, ...] = Field(default=(), description="Feeders that differ from the others of their station.")
+    switches: tuple[Switch, ...] = Field(default=(), description="Isolators, cross ties, by-passes.")
+    switch_events: tuple[SwitchEvent, ...] = Field(default=(), description="What changes its state, and when.")
+    bonds: tuple[Bonds, ...] = Field(default=(), description="Cross bonds between the rails of tracks.")
+    earthing: tuple[Earthing, ...] = Field(default=(), description="Connections of the rails with remote earth.")
+    voltage_limiting_devices: tuple[VoltageLimitingDevice, ...] = Field(
+        default=(), description="Devices that join the rails with earth when their potential is too high."
+    )
     loads: tuple[Load, ...] = Field(default=(), description="Fixed taps between contact line and rail.")

@@ -162,13 +162,13 @@ class _Bundle:
         self.tracks = tracks
         self.ends = {track.id: (track.from_km, track.to_km) for track in line.tracks}
         self.contact = [
-            (track, row.from_km, row.to_km, row.resistance_ohm_per_km / 1000.0)
+            (track, row.from_km, row.to_km, (row.resistance_ohm_per_km or 0.0) / 1000.0)
             for row in supply.contact_lines
             for track in tracks
             if row.tracks is None or track in row.tracks
         ]
         self.rails = [
-            (number, _return_tracks(row, line) & set(tracks), row.from_km, row.to_km, row.resistance_ohm_per_km / 1000.0)
+            (number, _return_tracks(row, line) & set(tracks), row.from_km, row.to_km, (row.resistance_ohm_per_km or 0.0) / 1000.0)
             for number, row in enumerate(supply.return_circuit)
             if _return_tracks(row, line) & set(tracks)
         ]
