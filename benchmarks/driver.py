@@ -113,7 +113,7 @@ def find_worst_balance(network, work, edges, balance, spot, trains, t0, steps):
         move_trains(network, spot, trains, t0 + step)
         place_ports(network, work)
         _, _, imbalance, _, _ = solve(network, work, step > 0)
-        _, inside = conductor_flows(network, work, balance)
+        _, inside, _ = conductor_flows(network, work, balance)
         _, ends = skeleton_balance(network, work, edges, balance)
         worst = max(worst, imbalance, inside, ends)
     return worst

@@ -64,9 +64,10 @@ def test_power_in_is_power_out_plus_losses(seed):
     for name, i in currents.items():
         net -= solved.u[name] * i
         gross += abs(solved.u[name] * i)
-    heat, *_ = solved.flows()
+    heat, inside, at_nodes, _ = solved.flows()
+    worst = max(solved.worst, inside, at_nodes, TOLERANCE_A)  # rounding of a voltage under a hard ceiling is worth more
     assert heat >= 0.0
-    assert net == pytest.approx(heat, abs=1e-9 * gross + 1e-3 + 4e3 * len(currents) * max(solved.worst, TOLERANCE_A))
+    assert net == pytest.approx(heat, abs=1e-9 * gross + 1e-3 + 4e3 * len(currents) * worst)
 
 
 @law(100)
@@ -88,7 +89,7 @@ def renamed(supply, seed):
     changed = {}
     for kind in ("substations", "section_cabins", "section_points", "loads"):
         rows = getattr(supply, kind)
-        new = [f"{kind[0]}{k}" for k in rng.permutation(len(rows))]
+        new = [f"{kind}-{k}" for k in rng.permutation(len(rows))]
         names |= {row.id: name for row, name in zip(rows, new, strict=True)}
         rows = [row.model_copy(update={"id": name}) for row, name in zip(rows, new, strict=True)]
         changed[kind] = tuple(rows[k] for k in rng.permutation(len(rows)))

@@ -76,7 +76,7 @@ def compare(seed, tally):
         return
     assert ours.status == CONVERGED
     assert ours.worst <= (FLAG_A if has_hard_ceiling(network) else TOLERANCE_A)
-    u = ours.work.ports["u"][: len(live)][live]
+    u = np.array([ours.u[name] for name in ours.names])[live]
     np.testing.assert_allclose(u[held], direct[held], rtol=0.0, atol=VOLTAGE_V)
     check_kirchhoff(network, ours)
     tally["compared"] += int(held.sum())
@@ -102,7 +102,7 @@ def check_kirchhoff(network, ours):
     shared = np.bincount(ends.ravel(), minlength=len(v))  # ports of a node, each of which balances by itself
     _, inside, worst, _ = ours.flows()
     assert max(inside, worst) <= accepted * shared.max(initial=1) + noise.max(initial=0.0) + floating
-    u = ours.work.ports["u"][: len(ours.names)]
+    u = np.array([ours.u[name] for name in ours.names])
     np.testing.assert_allclose(u, v[ends[:, 0]] - v[ends[:, 1]], rtol=0.0, atol=1e-6)
     assert np.all(np.abs(balance(network, v, u)) <= accepted * np.maximum(shared, 1) + noise + floating)
 
@@ -112,9 +112,13 @@ def our_potentials(network, ours):
     tables, work = ours.tables, ours.work
     known = {}
     nodes = [(row["contact"], row["rail"]) for row in tables.section_table if row["port"] < 0]
-    for k, ((track, km), (contact, rail)) in enumerate(zip(tables.sections, nodes, strict=False)):
-        side = "low" if k % 2 else "high"  # of the cross-section: both ends of one conductor follow each other
-        known[network.node((side, track, km))] = work.node_v[contact]
+    for number, ((track, km), (contact, rail)) in enumerate(zip(tables.sections, nodes, strict=False)):
+        sides = [side for side in ("low", "high") if (side, track, km) in network.one.label]
+        twice = (track, km) in (tables.sections[:number] + tables.sections[number + 1 :])
+        if twice and len(sides) == 2:  # the low side comes first
+            sides = sides[:1] if (track, km) not in tables.sections[:number] else sides[1:]
+        for side in sides:
+            known[network.node((side, track, km))] = work.node_v[contact]
         for name in network._rails([track], km):
             known[network.node(name)] = work.node_v[rail]
     for station, (positive, negative) in zip(tables.substations, tables.busbar, strict=True):

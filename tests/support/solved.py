@@ -3,7 +3,7 @@
 import numpy as np
 
 from tractionpower.io.limits_files import shipped_limits
-from tractionpower.kernels.flows import conductor_flows, skeleton_balance
+from tractionpower.kernels.flows import conductor_flows, link_current, skeleton_balance
 from tractionpower.kernels.network import CONVERGED, solve
 from tractionpower.kernels.ports import port_current
 from tractionpower.kernels.spans import place_ports
@@ -23,8 +23,11 @@ class Solved:
         self.network = self.tables.network
         self.work = new_work(self.network)
         place_ports(self.network, self.work)
-        self.sources = [s.id for s, port in zip(self.tables.substations, self.tables.source_port, strict=True) if port >= 0]
-        self.names = [*self.sources, *(load.id for load in self.tables.loads)]
+        ports = zip(self.tables.substations, self.tables.source_port.tolist(), strict=True)
+        self.ports = {station.id: port for station, port in ports if port >= 0}
+        self.sources = list(self.ports)
+        self.ports |= {load.id: port for load, port in zip(self.tables.loads, self.tables.load_port.tolist(), strict=True)}
+        self.names = list(self.ports)
         self.solve(expect=expect)
 
     def solve(self, *, warm=False, expect=CONVERGED):
@@ -32,21 +35,42 @@ class Solved:
         self.status, self.iterations, self.worst, self.factor, self.port = solve(self.network, self.work, warm)
         if expect is not None:
             assert self.status == expect, (self.status, self.worst, self.factor)
-        self.u = dict(zip(self.names, self.work.ports["u"].tolist(), strict=False))
+        self.u = {name: float(self.work.ports[port]["u"]) for name, port in self.ports.items()}
         return self
 
     @property
     def i(self):
         network, work = self.network, self.work
-        currents = [port_current(network.segments, network.ports[p], work.ports[p]["u"]) for p in range(len(self.names))]
-        return dict(zip(self.names, currents, strict=True))
+        return {
+            name: port_current(network.segments, network.ports[port], work.ports[port]["u"]) for name, port in self.ports.items()
+        }
 
     def flows(self):
         """Return the heat in all resistances [W], the largest imbalance inside the spans and of skeleton nodes [A]."""
         balance = np.zeros(self.network.nodes + 1)
-        span_heat, inside = conductor_flows(self.network, self.work, balance)
+        span_heat, inside, _ = conductor_flows(self.network, self.work, balance)
         edge_heat, worst = skeleton_balance(self.network, self.work, self.tables.edges, balance)
         return span_heat + edge_heat, inside, worst, balance
+
+    @property
+    def links(self):
+        """Currents of feeders and switches by identifier, from the busbar or the first side [A]."""
+        self.flows()
+        tables, network = self.tables, self.network
+        return {
+            link.id: link_current(tables.link_table, tables.terms, k, self.work, tables.edges, network.ports, network.segments)
+            for k, link in enumerate(tables.links)
+        }
+
+    @property
+    def rails(self):
+        """Rail potentials by tracks and kilometre [V]."""
+        tables = self.tables
+        return {
+            (place.tracks, place.km): float(self.work.node_v[node])
+            for place, node in zip(tables.rail_places, tables.rail_nodes.tolist(), strict=True)
+            if node >= 0
+        }
 
 
 def seed_network(loads=(), cabin="closed", **changes):

@@ -55,6 +55,7 @@ class Recorder:
         self.substation_a = Extremes(len(supply.substations))
         self.substation_w = Extremes(len(supply.substations))
         self.load_v, self.load_w = Extremes(len(supply.loads)), Extremes(len(supply.loads))
+        self.feeders = [k for k, link in enumerate(supply.links) if link.kind in ("feeder", "return")]
         self.section_v = Extremes(len(supply.sections))
         self.windows = SubstationWindows.of(len(supply.substations), clock.step_s)
         self.ledger, self.counted = ElectricLedger(), ElectricLedger()
@@ -104,9 +105,9 @@ class Recorder:
                 "substations",
                 substations_table(time_s, names, self.no_load_v, self.dissipative_ohm, rows.source_v, rows.source_a),
             )
-        if "feeders" in self.wanted and supply.feeders:
-            feeders = [(feeder.substation, feeder.track, feeder.side) for feeder in supply.feeders]
-            append("feeders", feeders_table(time_s, feeders, rows.feeder_a))
+        if "feeders" in self.wanted and self.feeders:
+            feeders = [(link.station, link.track, link.side) for link in (supply.links[k] for k in self.feeders)]
+            append("feeders", feeders_table(time_s, feeders, rows.link_a[:, self.feeders]))
         if "loads" in self.wanted and supply.loads:
             append("loads", loads_table(time_s, [load.id for load in supply.loads], rows.load_v, rows.load_a))
 

@@ -49,7 +49,8 @@ def compile_scenario(scenario: Scenario) -> CompiledScenario:
     clock = np.array([scenario.clock.start, scenario.clock.step_s, coupling_voltage(scenario, supply) or 0.0])
     entries = np.argsort(movement.tables.trains["start_s"], kind="stable").astype(np.int64)
     block = BlockTables(
-        supply.network, supply.edges, _sources(supply), _loads(supply), supply.feeder_end, supply.section_table, clock,
+        supply.network, supply.edges, _sources(supply), _loads(supply), supply.link_table, supply.terms,
+        supply.rail_nodes, supply.earth_edge, supply.triggers, supply.section_table, clock,
         movement.tables, fleet, ways, entries,
     )  # fmt: skip
     return CompiledScenario(movement, supply, block)
@@ -93,7 +94,7 @@ def _compile_fleet(movement: Movement, supply: SupplyTables, room: Sequence[int]
 
 def _way_row(way: Way) -> tuple[float, ...]:
     to = way.stretch
-    return way.from_m, to.span, to.positive, to.negative, way.x_m, way.sign, to.length_m, to.no_load_v
+    return way.from_m, to.span, to.positive, to.negative, way.x_m, way.sign, to.length_m, to.no_load_v, to.earthed
 
 
 def _sources(supply: SupplyTables) -> NDArray[np.void]:

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tractionpower.kernels.block_tables import BUFFER_FULL, DONE
+from tractionpower.kernels.block_tables import BUFFER_FULL, DONE, OVERCURRENT, TRIGGERED
 from tractionpower.kernels.fleet import answer_trains, ask_line, enter_trains, revise_braking
-from tractionpower.kernels.flows import conductor_flows, skeleton_balance
+from tractionpower.kernels.flows import conductor_flows, link_current, skeleton_balance
 from tractionpower.kernels.jit import njit
+from tractionpower.kernels.motion import TINY_S
 from tractionpower.kernels.network import CONVERGED, FLAG_A, NOT_CONVERGED, solve
 from tractionpower.kernels.ports import port_current
 from tractionpower.kernels.spans import place_ports
@@ -38,7 +39,7 @@ def advance(tables, state, buffers, until_step):
     steps : int
         Number of steps run.
     reason : int
-        `DONE` or `BUFFER_FULL`.
+        `DONE`, `BUFFER_FULL`, or `TRIGGERED`: `state.fired` tells the triggers that the last step has fired.
     """
     progress = state.progress[0]
     row = used = 0
@@ -63,7 +64,29 @@ def advance(tables, state, buffers, until_step):
         used = answer_trains(tables, state, t, buffers.trains, used)
         progress.step += 1
         row += 1
+        if _watch(tables, state, buffers, row - 1, t):
+            return row, TRIGGERED
     return row, DONE
+
+
+@njit
+def _watch(tables, state, buffers, row, t):
+    """Look at all triggers after the step at `t` [s]; tell whether one fires."""
+    fires = False
+    for k in range(tables.triggers.shape[0]):
+        trigger = tables.triggers[k]
+        state.fired[k] = False
+        if trigger.kind == OVERCURRENT:
+            value = abs(buffers.link_a[row, trigger.index])
+        else:
+            value = abs(buffers.rail_v[row, trigger.index])
+        if not value > trigger.above:
+            state.since_s[k] = np.inf
+            continue
+        state.since_s[k] = min(state.since_s[k], t)
+        if t + tables.clock[1] - state.since_s[k] >= trigger.delay_s - TINY_S:
+            state.fired[k] = fires = True
+    return fires
 
 
 @njit
@@ -92,7 +115,7 @@ def _solve_step(tables, state, warm):
         network.ports[tables.loads[k].port].scale = 1.0 if state.load_on[k] else 0.0
     place_ports(network, work)
     status, iterations, worst, factor, port = solve(network, work, warm)
-    heat, gap = conductor_flows(network, work, state.balance)
+    heat, gap, leaked = conductor_flows(network, work, state.balance)
     edge_heat, node_gap = skeleton_balance(network, work, tables.edges, state.balance)
     result.worst_a = max(worst, gap, node_gap)
     result.status = NOT_CONVERGED if status == CONVERGED and not result.worst_a <= FLAG_A else status
@@ -100,6 +123,7 @@ def _solve_step(tables, state, warm):
     result.factor = factor
     result.port = port
     result.conductor_w = heat + edge_heat
+    result.leaked_a = leaked
     result.source_w = 0.0
     result.regulation_w = 0.0
     result.load_w = 0.0
@@ -142,9 +166,15 @@ def _record(tables, state, buffers, row):
         u = work.ports[port].u
         buffers.load_v[row, k] = u
         buffers.load_a[row, k] = port_current(network.segments, network.ports[port], u)
-    for k in range(tables.feeder_end.shape[0]):
-        w = work.conductors[tables.feeder_end[k, 0]]
-        buffers.feeder_a[row, k] = w.left_a if tables.feeder_end[k, 1] == 0 else w.right_a
+    for k in range(tables.links.shape[0]):
+        buffers.link_a[row, k] = link_current(tables.links, tables.terms, k, work, tables.edges, network.ports, network.segments)
+    for k in range(tables.rails.shape[0]):
+        buffers.rail_v[row, k] = work.node_v[tables.rails[k]] if tables.rails[k] >= 0 else np.nan
+    for k in range(tables.earth.shape[0]):
+        buffers.earth_a[row, k] = 0.0
+        if tables.earth[k] >= 0:
+            edge = tables.edges[tables.earth[k]]
+            buffers.earth_a[row, k] = (work.node_v[edge.first] - work.node_v[edge.second]) * edge.conductance_s
     for k in range(tables.sections.shape[0]):
         section = tables.sections[k]
         if section.port >= 0:

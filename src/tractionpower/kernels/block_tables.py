@@ -20,6 +20,12 @@ LOAD = np.dtype([("port", "i8"), ("from_s", "f8"), ("to_s", "f8")])
 SECTION = np.dtype([("contact", "i8"), ("rail", "i8"), ("port", "i8")])
 """A place whose voltage is recorded: two skeleton nodes, or a port in a span (else -1)."""
 
+OVERCURRENT, RAIL_POTENTIAL = 0, 1
+"""What a trigger watches: the current of a link, the potential of a node against earth, both regardless of their sign."""
+
+TRIGGER = np.dtype([("kind", "i8"), ("index", "i8"), ("above", "f8"), ("delay_s", "f8")])
+"""A threshold; the trigger fires when it has been passed for `delay_s`. Infinite: it does not watch."""
+
 WAY = np.dtype(
     [
         ("from_m", "f8"),  # distance from the start of the route
@@ -30,7 +36,9 @@ WAY = np.dtype(
         ("sign", "f8"),  # -1 where the train runs towards the left end of the span
         ("length_m", "f8"),  # of the span
         ("start_v", "f8"),  # highest no-load voltage there
-    ]
+        ("earthed", "?"),  # whether the rails there have a potential against earth
+    ],
+    align=True,
 )
 """A stretch of a route within one span: where the front of a train stands in the network."""
 
@@ -44,7 +52,7 @@ FLEET = np.dtype(
 )
 """A train in the network."""
 
-DONE, BUFFER_FULL = 0, 1
+DONE, BUFFER_FULL, TRIGGERED = 0, 1, 2
 """Why `advance` came back."""
 
 
@@ -57,8 +65,14 @@ class BlockTables(NamedTuple):
         The compiled network; `ports.scale` is written by the devices.
     edges, sources, loads
         Record arrays of `EDGE`, `SOURCE`, `LOAD`.
-    feeder_end
-        Conductor and end (0 left, 1 right) that each feeder supplies, shape (feeders, 2).
+    links, terms
+        Breakers and switches whose currents are recorded, record array of `LINK`, and their terms, of `TERM`.
+    rails
+        Nodes whose potential against earth is recorded, -1 where it has none, shape (places,).
+    earth
+        Edge of each connection with earth, -1 where it is open, shape (connections,).
+    triggers
+        Thresholds that end a block, record array of `TRIGGER`.
     sections
         Places whose voltage is recorded, record array of `SECTION`.
     clock
@@ -75,7 +89,11 @@ class BlockTables(NamedTuple):
     edges: NDArray[np.void]
     sources: NDArray[np.void]
     loads: NDArray[np.void]
-    feeder_end: NDArray[np.int64]
+    links: NDArray[np.void]
+    terms: NDArray[np.void]
+    rails: NDArray[np.int64]
+    earth: NDArray[np.int64]
+    triggers: NDArray[np.void]
     sections: NDArray[np.void]
     clock: NDArray[np.float64]
     trains: TrainTables
@@ -108,6 +126,7 @@ STEP_RESULT = np.dtype(
         ("train_w", "f8"),
         ("conductor_w", "f8"),  # heat in contact lines, rails, feeders
         ("gross_w", "f8"),  # sum of the absolute values of what is exchanged
+        ("leaked_a", "f8"),  # leaves the rails for earth
         ("trains", "i8"),  # on the line
     ]
 )
@@ -123,6 +142,8 @@ class State(NamedTuple):
     balance: NDArray[np.float64]
     result: NDArray[np.void]  # one record of STEP_RESULT
     trains: TrainState
+    since_s: NDArray[np.float64]  # for each trigger: from when its threshold has been passed without a break, else infinite
+    fired: NDArray[np.bool_]  # triggers that ended the block
     active: NDArray[np.int64]  # trains on the line, rising
     way: NDArray[np.int64]  # stretch of its route that each train is on
     breaks: NDArray[np.float64]  # scratch
@@ -136,7 +157,9 @@ class Buffers(NamedTuple):
     source_a: NDArray[np.float64]
     load_v: NDArray[np.float64]
     load_a: NDArray[np.float64]
-    feeder_a: NDArray[np.float64]
+    link_a: NDArray[np.float64]
+    rail_v: NDArray[np.float64]  # NaN where there is no potential
+    earth_a: NDArray[np.float64]  # into earth
     section_v: NDArray[np.float64]
     trains: NDArray[np.void]  # TRAIN_ROW, one after the other: as many of each step as `steps` says
 
@@ -155,6 +178,8 @@ def new_state(tables: BlockTables) -> State:
         balance=np.zeros(network.nodes + 1),
         result=np.zeros(1, STEP_RESULT),
         trains=new_train_state(tables.trains),
+        since_s=np.full(len(tables.triggers), np.inf),
+        fired=np.zeros(len(tables.triggers), np.bool_),
         active=np.zeros(trains, np.int64),
         way=np.zeros(trains, np.int64),
         breaks=np.zeros(BREAKS),
@@ -172,7 +197,7 @@ def copy_state(state: State) -> State:
 def new_buffers(tables: BlockTables, rows: int, train_rows: int | None = None) -> Buffers:
     """Return buffers for `rows` steps and `train_rows` rows of trains, at least one for each train; left out: enough for all."""
     sources, loads, trains = len(tables.sources), len(tables.loads), len(tables.fleet)
-    widths = (sources, sources, loads, loads, len(tables.feeder_end), len(tables.sections))
+    widths = (sources, sources, loads, loads, len(tables.links), len(tables.rails), len(tables.earth), len(tables.sections))
     room = rows * trains if train_rows is None else max(train_rows, trains)
     return Buffers(np.zeros(rows, STEP_RESULT), *(np.zeros((rows, width)) for width in widths), trains=np.zeros(room, TRAIN_ROW))
 

@@ -125,6 +125,8 @@ def answer_trains(tables, state, t, rows, used):
             own, _ = demand_current(tables.trains, train, trial, demand, fixed_v)
         settle(tables.trains, state.trains, k, (t, tables.clock[1]), (at, own, served), row)
         row.coupling_w = u * i - at * own
+        earthed = tables.ways[tables.fleet[k].first_way + state.way[k]].earthed
+        row.rail_v = state.work.sides[tables.fleet[k].port, 1].node_v if earthed else np.nan
         row.voltage_v, row.current_a, row.power_w, row.returned_w = u, i, u * i, max(-u * i, 0.0)
         used += 1
         state.active[stay] = k

@@ -5,9 +5,9 @@ This looks at the solution afresh from the node potentials, so that the balance 
 
 from __future__ import annotations
 
-from tractionpower.kernels.jit import njit
+from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.ports import port_current
-from tractionpower.kernels.tables import SHARED
+from tractionpower.kernels.tables import EDGE_CURRENT, LEFT_END, PORT_CURRENT, SHARED
 
 
 @njit
@@ -24,19 +24,24 @@ def conductor_flows(network, work, balance):
     Returns
     -------
     loss : float
-        Heat in the conductors of the spans [W].
+        Heat in the conductors of the spans and in their leakage [W].
     worst : float
         Largest imbalance of a node inside a span [A].
+    leaked : float
+        Current that leaves the conductors for earth [A]; what comes back elsewhere is not counted.
     """
     for k in range(balance.shape[0]):
         balance[k] = 0.0
-    loss = worst = 0.0
+    loss = worst = leaked = 0.0
+    ground = balance.shape[0] - 1
     for s in range(network.spans.shape[0]):
         span = network.spans[s]
         for c in range(span.first_conductor, span.first_conductor + span.conductors):
             w = work.conductors[c]
             w.left_a = 0.0
             w.right_a = 0.0
+            w.earth_a = 0.0
+            w.leaked_a = 0.0
             w.front_v = work.node_v[network.conductors[c].left_node]
             w.front_a = 0.0
             w.open = False
@@ -50,10 +55,12 @@ def conductor_flows(network, work, balance):
             loss += heat
             worst = max(worst, gap)
         for c in range(span.first_conductor, span.first_conductor + span.conductors):
-            heat, gap = _finish(network.conductors[c], work.conductors[c], work.node_v, balance)
+            heat, gap = _finish(network.conductors[c], work.conductors[c], work.node_v, span.length_m, balance)
             loss += heat
             worst = max(worst, gap)
-    return loss, worst
+            leaked += work.conductors[c].leaked_a
+            balance[ground] -= work.conductors[c].earth_a
+    return loss, worst, leaked
 
 
 @njit
@@ -70,27 +77,44 @@ def _insert(network, work, side, i):
         return 0.0, 0.0
     drop = w.front_v - side.node_v
     inflow = drop * side.conductance_s
-    gap = abs(w.front_a - inflow) if w.open else 0.0
+    leaves, enters = _leak(w, side.shunt_s, w.front_v, side.node_v)
+    gap = abs(w.front_a - inflow - leaves) if w.open else 0.0
+    heat = drop * inflow + leaves * w.front_v + enters * side.node_v
     if not w.open:
-        w.left_a += inflow
+        w.left_a += inflow + leaves
     w.open = True
     w.front_v = side.node_v
-    w.front_a = inflow - i
-    return drop * inflow, gap
+    w.front_a = inflow - enters - i
+    return heat, gap
+
+
+@inlined
+def _leak(w, shunt, before_v, after_v):
+    """Return the currents into earth at the two ends of an element, and count what leaves."""
+    before, after = shunt * before_v, shunt * after_v
+    w.earth_a += before + after
+    w.leaked_a += max(before, 0.0) + max(after, 0.0)
+    return before, after
 
 
 @njit
-def _finish(conductor, w, node_v, balance):
+def _finish(conductor, w, node_v, length, balance):
     heat = gap = 0.0
+    left_v, right_v = node_v[conductor.left_node], node_v[conductor.right_node]
     if conductor.ohm_per_m > 0.0:
-        drop = w.front_v - node_v[conductor.right_node]
-        outflow = drop * w.end_s
-        heat = drop * outflow
-        w.right_a -= outflow
+        drop = w.front_v - right_v
+        leaves, enters = _leak(w, w.end_shunt_s, w.front_v, right_v)
+        inflow = drop * w.end_s
+        heat = drop * inflow + leaves * w.front_v + enters * right_v
+        w.right_a -= inflow - enters
         if w.open:
-            gap = abs(w.front_a - outflow)
+            gap = abs(w.front_a - inflow - leaves)
         else:
-            w.left_a += outflow
+            w.left_a += inflow + leaves
+    else:
+        leaves, _ = _leak(w, conductor.siemens_per_m * length, left_v, 0.0)
+        heat = leaves * left_v
+        w.left_a += leaves
     balance[conductor.left_node] += w.left_a
     balance[conductor.right_node] += w.right_a
     return heat, gap
@@ -117,3 +141,22 @@ def skeleton_balance(network, work, edges, balance):
     for n in range(balance.shape[0]):
         worst = max(worst, abs(balance[n]))
     return heat, worst
+
+
+@njit
+def link_current(links, terms, k, work, edges, ports, segments):
+    """Return the current of link `k` [A]: what the balance of the nodes on one of its sides leaves for it."""
+    total = 0.0
+    for t in range(links[k].first_term, links[k].first_term + links[k].terms):
+        term = terms[t]
+        if term.kind == EDGE_CURRENT:
+            edge = edges[term.index]
+            i = (work.node_v[edge.first] - work.node_v[edge.second]) * edge.conductance_s
+        elif term.kind == PORT_CURRENT:
+            i = port_current(segments, ports[term.index], work.ports[term.index].u)
+        elif term.kind == LEFT_END:
+            i = work.conductors[term.index].left_a
+        else:
+            i = work.conductors[term.index].right_a
+        total += term.sign * i
+    return total

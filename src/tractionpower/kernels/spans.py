@@ -3,10 +3,13 @@
 One sweep from left to right keeps a small *frontal matrix* over the terminals of the left end and the present front
 node of every conductor. Where a port stands, only the two conductors that it touches move on; the node left behind is
 eliminated at once. The cost is linear in the number of ports and independent of the conductors that nobody touches.
+A leaky conductor is cut into pi-elements by its nodes; they are exact for any length (`pi_element`).
 Slots of the frontal matrix, both triangles: terminals of the right end, of the left end, fronts, ground (a dummy).
 """
 
 from __future__ import annotations
+
+import numpy as np
 
 from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.tables import FIRST, NEXT, SHARED, SHARED_NODE_M
@@ -67,9 +70,22 @@ def _attach(conductor, w, side, x, length):
         side.slot = conductor.front_slot
         if w.nodes == 0 or x - w.last_m >= SHARED_NODE_M:
             side.insertion = FIRST if w.nodes == 0 else NEXT
-            side.conductance_s = 1.0 / (conductor.ohm_per_m * (x - w.last_m))
+            side.conductance_s, side.shunt_s = pi_element(conductor, x - w.last_m)
             w.last_m = x
             w.nodes += 1
+
+
+@inlined
+def pi_element(conductor, length):
+    """Return conductance and shunt at either end [S] of the pi-element that stands for a `length` [m] of a conductor.
+
+    Exact for r ohm/m and g S/m: 1/(Z sinh(a l)) and tanh(a l/2)/Z with a = sqrt(r g), Z = sqrt(r/g) (telegraph equation).
+    """
+    r, g = conductor.ohm_per_m, conductor.siemens_per_m
+    if g == 0.0:
+        return 1.0 / (r * length), 0.0
+    z, angle = np.sqrt(r / g), np.sqrt(r * g) * length
+    return 1.0 / (z * np.sinh(angle)), np.tanh(0.5 * angle) / z
 
 
 @njit
@@ -86,12 +102,16 @@ def _finish_conductors(network, work):
         for c in range(span.first_conductor, span.first_conductor + span.conductors):
             conductor, w = network.conductors[c], work.conductors[c]
             if conductor.ohm_per_m == 0.0:
+                base[conductor.left_node] += conductor.siemens_per_m * span.length_m
                 continue
-            w.end_s = 1.0 / (conductor.ohm_per_m * (span.length_m - w.last_m))
-            if w.nodes == 0 and conductor.left_node != conductor.right_node:
-                base[conductor.left_node] += w.end_s
-                base[conductor.right_node] += w.end_s
-                base[conductor.coupling] -= w.end_s
+            w.end_s, w.end_shunt_s = pi_element(conductor, span.length_m - w.last_m)
+            if w.nodes == 0:
+                base[conductor.left_node] += w.end_shunt_s
+                base[conductor.right_node] += w.end_shunt_s
+                if conductor.left_node != conductor.right_node:
+                    base[conductor.left_node] += w.end_s
+                    base[conductor.right_node] += w.end_s
+                    base[conductor.coupling] -= w.end_s
 
 
 @njit
@@ -142,9 +162,12 @@ def _sweep(network, work):
             for m in range(2):
                 side = work.sides[p, m]
                 if side.insertion == FIRST:
-                    _join(front, side.slot, conductors[side.conductor].left_slot, side.conductance_s)
+                    left = conductors[side.conductor].left_slot
+                    _join(front, side.slot, left, side.conductance_s)
+                    front[side.slot, side.slot] += side.shunt_s
+                    front[left, left] += side.shunt_s
                 elif side.insertion == NEXT:
-                    if not _advance(front, b, rows[row], side.slot, side.conductance_s, slots):
+                    if not _advance(front, b, rows[row], side, slots):
                         return False
                     row += 1
             w, i, j = work.ports[p], work.sides[p, 0].slot, work.sides[p, 1].slot
@@ -154,8 +177,10 @@ def _sweep(network, work):
         for k in range(span.conductors):
             c = span.first_conductor + span.conductors - 1 - k
             if conductor_work[c].nodes > 0:
-                f = conductors[c].front_slot
-                _join(front, f, conductors[c].right_slot, conductor_work[c].end_s)
+                f, right = conductors[c].front_slot, conductors[c].right_slot
+                _join(front, f, right, conductor_work[c].end_s)
+                front[f, f] += conductor_work[c].end_shunt_s
+                front[right, right] += conductor_work[c].end_shunt_s
                 if not _eliminate(front, b, rows[row], f):
                     return False
                 row += 1
@@ -194,12 +219,13 @@ def _join(front, i, j, conductance):
 
 
 @inlined
-def _advance(front, b, row, f, conductance, slots):
-    """Move the front of one conductor to a new node in the same slot `f`; eliminate the node that it leaves.
+def _advance(front, b, row, side, slots):
+    """Move the front of one conductor to a new node in the same slot; eliminate the node that it leaves.
 
     With d the pivot, the new node has ``g F_ff/d`` on the diagonal and ``g F_fp/d`` towards slot p: no differences.
     """
-    own, b_f = front[f, f], b[f]
+    f, conductance = side.slot, side.conductance_s
+    own, b_f = front[f, f] + side.shunt_s, b[f]
     d = own + conductance
     if not d > 0.0:
         return False
@@ -216,7 +242,7 @@ def _advance(front, b, row, f, conductance, slots):
     for p in range(slots):
         front[f, p] = conductance * row[p]
         front[p, f] = conductance * row[p]
-    front[f, f] = own * share
+    front[f, f] = own * share + side.shunt_s
     row[f] = -share
     row[row.shape[0] - 1] = b_f * inverse
     b[f] = share * b_f

@@ -34,6 +34,7 @@ SPAN = np.dtype(
 CONDUCTOR = np.dtype(
     [
         ("ohm_per_m", "f8"),  # zero: both ends are one node
+        ("siemens_per_m", "f8"),  # leakage to earth, which is ground then
         ("left_node", "i8"),
         ("right_node", "i8"),
         ("coupling", "i8"),  # place of the pair of its ends in the skeleton's values
@@ -89,6 +90,7 @@ SIDE_WORK = np.dtype(
         ("slot", "i8"),  # where the port connects in the frontal matrix
         ("insertion", "i8"),  # one of SHARED, FIRST, NEXT
         ("conductance_s", "f8"),  # from the node before
+        ("shunt_s", "f8"),  # to earth, at both ends of that element
         ("node_v", "f8"),  # potential of the last linear solution
     ]
 )
@@ -102,6 +104,9 @@ CONDUCTOR_WORK = np.dtype(
         ("last_m", "f8"),  # where the front stands
         ("nodes", "i8"),  # inserted by ports
         ("end_s", "f8"),  # conductance from the front to the right end
+        ("end_shunt_s", "f8"),  # to earth, at both ends of that element
+        ("earth_a", "f8"),  # goes into earth
+        ("leaked_a", "f8"),  # leaves for earth where the potential is positive
         ("left_a", "f8"),  # current that leaves the left end into the span
         ("right_a", "f8"),
         ("front_v", "f8"),
@@ -113,6 +118,15 @@ CONDUCTOR_WORK = np.dtype(
 
 EDGE = np.dtype([("first", "i8"), ("second", "i8"), ("conductance_s", "f8")])
 """A fixed resistance between two skeleton nodes: a feeder, a return feeder."""
+
+LINK = np.dtype([("first_term", "i8"), ("terms", "i8")])
+"""A breaker or switch; its current is a sum of terms, none where it is open."""
+
+TERM = np.dtype([("kind", "i8"), ("index", "i8"), ("sign", "f8")])
+"""A current: of an end of a conductor into its span, of an edge, of a port between skeleton nodes."""
+
+LEFT_END, RIGHT_END, EDGE_CURRENT, PORT_CURRENT = 0, 1, 2, 3
+"""Kinds of terms."""
 
 SPAN_WORK = np.dtype(
     [

@@ -218,6 +218,7 @@ TRAIN_ROW = np.dtype(
         ("resistance_n", "f8"),
         ("wished_n", "f8"),
         ("voltage_v", "f8"),
+        ("rail_v", "f8"),  # rail potential under the front; NaN: none is defined
         ("current_a", "f8"),
         ("power_w", "f8"),
         ("auxiliary_w", "f8"),

@@ -22,11 +22,21 @@ def source_segments(substation: Substation) -> Segments:
     A blocked rectifier keeps a tiny conductance, so that a network whose rectifiers all block does not float.
     """
     e = no_load_voltage(substation)
-    g = 1.0 / substation.internal_resistance_ohm
+    g = 1.0 / internal_resistance(substation)
     conducting = (_DOWN, -e * g, g, 0.0)
     if substation.conducts == "both":
         return [conducting]
     return [conducting, (e, -e * BLOCKED_CONDUCTANCE_S, BLOCKED_CONDUCTANCE_S, 0.0)]
+
+
+def internal_resistance(substation: Substation) -> float:
+    """Return the internal resistance with the units that are in service [ohm]; with none, that of all.
+
+    R(k) = R_unit/k + R_grid: the transformers and rectifiers of k units in parallel, behind the one grid.
+    """
+    k = substation.units_in_service or substation.units
+    grid = substation.grid_resistance_ohm
+    return (substation.internal_resistance_ohm - grid) * substation.units / k + grid
 
 
 def no_load_voltage(substation: Substation) -> float:

@@ -8,18 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.kernels.block_tables import SECTION
-from tractionpower.kernels.tables import (
-    BLOCKED_CONDUCTANCE_S,
-    CONDUCTOR,
-    EDGE,
-    NO_SLOT,
-    PORT,
-    SEGMENT,
-    SHARED_NODE_M,
-    SPAN,
-    Network,
-)
+from tractionpower.kernels.block_tables import OVERCURRENT, RAIL_POTENTIAL, SECTION, TRIGGER
+from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, EDGE, PORT, SEGMENT, SHARED_NODE_M, Network
+from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import Limit, SystemVoltages, system_voltages
 from tractionpower.model.line import Line
 from tractionpower.model.supply import Load, Substation, Supply
@@ -30,8 +21,12 @@ from tractionpower.supply.characteristics import (
     load_segments,
     source_segments,
 )
+from tractionpower.supply.links import link_tables
 from tractionpower.supply.numbering import number_nodes
-from tractionpower.supply.topology import Feeder, Node, Span, Topology, build_topology
+from tractionpower.supply.protection import Trigger, find_triggers
+from tractionpower.supply.span_tables import span_tables
+from tractionpower.supply.topology import Link, RailPlace, Topology
+from tractionpower.supply.wiring import build_topology
 
 CEILING_FACTOR = 5.0
 """Multiple of the no-load voltage above which feeding back without limits counts as not served."""
@@ -53,6 +48,8 @@ class Stretch:
         Length of the span [m].
     no_load_v
         Highest no-load voltage that sources put on the contact line; 0 without one [V].
+    earthed
+        Whether the rails have a potential against earth.
     """
 
     track: str
@@ -63,6 +60,7 @@ class Stretch:
     negative: int
     length_m: float
     no_load_v: float
+    earthed: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,17 +81,26 @@ class SupplyTables:
         Positive and negative node of each substation, -1 where its busbars are not in the network; shape (n, 2).
     loads, load_port
         All loads by identifier and their ports.
-    feeders, feeder_end
-        Feeders, and for each the conductor (of `network.conductors`) and its end (0 left, 1 right); shape (n, 2).
+    links, link_table, terms
+        Breakers and switches, and what the solver knows of them: record arrays of `LINK` and `TERM`.
     sections, section_table
         Track and kilometre of the places whose voltage is recorded, so that the voltage runs straight between them; and
         where the solver finds it, record array of `SECTION`.
+    rail_places, rail_nodes
+        Places of the rails whose potential is recorded, none where nothing is joined with earth; and their nodes, -1
+        where they have no potential against earth in the present state.
+    earth_devices, earth_edge
+        Earthings and voltage-limiting devices by identifier, each in this order, and their edges, -1 where open.
+    watched, triggers
+        What the triggers stand for, and record array of `TRIGGER`.
     stretches
         Where contact lines are, by track and place.
     train_port
         Ports of trains, which stand nowhere yet.
     voltages
         Voltage limits of the system.
+
+    The order of all lists depends on what is declared, not on the states of devices.
     """
 
     network: Network
@@ -103,16 +110,29 @@ class SupplyTables:
     busbar: NDArray[np.int64]
     loads: tuple[Load, ...]
     load_port: NDArray[np.int64]
-    feeders: tuple[Feeder, ...]
-    feeder_end: NDArray[np.int64]
+    links: tuple[Link, ...]
+    link_table: NDArray[np.void]
+    terms: NDArray[np.void]
     sections: tuple[tuple[str, float], ...]
     section_table: NDArray[np.void]
+    rail_places: tuple[RailPlace, ...]
+    rail_nodes: NDArray[np.int64]
+    earth_devices: tuple[str, ...]
+    earth_edge: NDArray[np.int64]
+    watched: tuple[Trigger, ...]
+    triggers: NDArray[np.void]
     stretches: tuple[Stretch, ...]
     train_port: NDArray[np.int64]
     voltages: SystemVoltages
 
 
-def compile_network(supply: Supply, line: Line, limits: tuple[Limit, ...], train_segments: Sequence[int] = ()) -> SupplyTables:
+def compile_network(
+    supply: Supply,
+    line: Line,
+    limits: tuple[Limit, ...],
+    train_segments: Sequence[int] = (),
+    conductors: Sequence[Conductor] = (),
+) -> SupplyTables:
     """Compile a supply system that has passed `supply.checks.check_supply`.
 
     Parameters
@@ -121,45 +141,59 @@ def compile_network(supply: Supply, line: Line, limits: tuple[Limit, ...], train
         What is declared.
     train_segments
         For each train, how many segments its port may have.
+    conductors
+        Table of conductors that the supply names.
     """
-    return _Compiler(supply, line, limits).compile(train_segments)
+    return _Compiler(supply, line, limits, conductors).compile(train_segments)
 
 
 class _Compiler:
-    def __init__(self, supply: Supply, line: Line, limits: tuple[Limit, ...]) -> None:
+    def __init__(self, supply: Supply, line: Line, limits: tuple[Limit, ...], conductors: Sequence[Conductor]) -> None:
+        self.supply = supply
         self.voltages = system_voltages(limits, supply.system)
-        self.topology: Topology = build_topology(supply, line)
+        self.topology: Topology = build_topology(supply, line, conductors)
         self.substations = tuple(sorted(supply.substations, key=lambda substation: substation.id))
         self.loads = tuple(sorted(supply.loads, key=lambda load: load.id))
-        in_service = [substation for substation in self.substations if substation.state == "in_service"]
-        self.sources = [substation for substation in in_service if substation.id in self.topology.busbars]
-        self.find = self.topology.nodes.find
+        self.sources = [s for s in self.substations if s.feeds and s.id in self.topology.busbars]
+        self.find = self.topology.find
         self.probes = self._probes()
         self.nodes = number_nodes(self.topology, self.sources)
         self.structure = self.nodes.structure
+        self.edge_rows = [(self.node(a), self.node(b), 1.0 / ohm) for a, b, ohm in self.topology.edges()]
 
     def compile(self, train_segments: Sequence[int]) -> SupplyTables:
-        spans, conductors, terminals, scatter = self._span_tables()
+        topology = self.topology
+        spans = span_tables(topology.spans, self.node, self.structure)
+        self.first_conductor = spans.first_conductor
         ports, segments = _with_trains(*self._port_tables(), train_segments)
         network = Network(
-            spans, conductors, ports, segments, terminals, scatter,
+            spans.spans, spans.conductors, ports, segments, spans.terminals, spans.scatter,
             self.structure.column_start, self.structure.row, self.structure.target, self._base(),
         )  # fmt: skip
-        source_ids = [substation.id for substation in self.sources]
-        source_port = [source_ids.index(s.id) if s.id in source_ids else -1 for s in self.substations]
-        busbars = [self.topology.busbars.get(s.id) for s in self.substations]
+        feeding = {source.id for source in self.sources}
+        port_of = {substation.id: k for k, substation in enumerate(self.substations) if substation.id in feeding}
+        busbars = [topology.busbars.get(s.id) for s in self.substations]
+        links, terms = link_tables(topology, self._edge_numbers(), port_of)
+        watched = find_triggers(self.supply, topology.links)
         return SupplyTables(
             network=network,
-            edges=self._edges(),
+            edges=np.array([row for row in self.edge_rows if row[0] != row[1]], EDGE),
             substations=self.substations,
-            source_port=np.array(source_port, np.int64),
+            source_port=np.array([port_of.get(s.id, -1) for s in self.substations], np.int64),
             busbar=_pairs([(self.node(b.positive), self.node(b.negative)) if b else (-1, -1) for b in busbars]),
             loads=self.loads,
-            load_port=len(self.sources) + np.arange(len(self.loads), dtype=np.int64),
-            feeders=tuple(self.topology.feeders),
-            feeder_end=_pairs([self._feeder_end(feeder) for feeder in self.topology.feeders]),
-            sections=tuple(place[:2] for place in self.topology.sections) + tuple(self.probes),
+            load_port=len(self.substations) + np.arange(len(self.loads), dtype=np.int64),
+            links=tuple(topology.links),
+            link_table=links,
+            terms=terms,
+            sections=tuple((place.track, place.km) for place in topology.sections) + tuple(self.probes),
             section_table=self._section_table(),
+            rail_places=tuple(topology.rail_places) if topology.earth is not None else (),
+            rail_nodes=self._rail_nodes(),
+            earth_devices=tuple(item.id for item in topology.earth_links),
+            earth_edge=self._earth_edges(),
+            watched=watched,
+            triggers=self._triggers(watched),
             stretches=tuple(self._stretches()),
             train_port=np.arange(len(ports) - len(train_segments), len(ports), dtype=np.int64),
             voltages=self.voltages,
@@ -172,7 +206,7 @@ class _Compiler:
         """
         topology = self.topology
         beside = {
-            (track, load.km) for load in self.loads for track in topology.spans[topology.locate(load.track, load.km)[0]].returns
+            (track, load.km) for load in self.loads for track in topology.spans[topology.locate(load.track, load.km)[0]].tracks
         }
         kms = {track: [load.km for load in self.loads if load.track == track] for track, _ in beside}
         return sorted(
@@ -181,107 +215,100 @@ class _Compiler:
 
     # -- nodes ---------------------------------------------------------------------------------------------------
 
-    def node(self, node: Node) -> int:
+    def node(self, node: int) -> int:
         """Return the number of a node: its rank in the elimination, or ground."""
         return self.nodes.number[self.find(node)]
 
-    def _no_load_v(self, node: Node) -> float:
+    def _no_load_v(self, node: int) -> float:
         return self.nodes.no_load_v.get(self.find(node), 0.0)
+
+    def _is_earthed(self, node: int) -> bool:
+        return self.find(node) in self.nodes.earthed
 
     def _base(self) -> NDArray[np.float64]:
         n, place = len(self.structure.order), self.structure.place
         base = np.zeros(n + 1 + len(self.structure.row))
-        for edge in self._edges():
-            i, j, g = int(edge["first"]), int(edge["second"]), edge["conductance_s"]
-            base[i] += g
-            base[j] += g
-            base[place(i, j)] -= g
+        for i, j, g in self.edge_rows:
+            if i != j:
+                base[i] += g
+                base[j] += g
+                base[place(i, j)] -= g
         base[list(self.nodes.floating)] += BLOCKED_CONDUCTANCE_S
         return base
 
-    def _edges(self) -> NDArray[np.void]:
-        rows = [(self.node(a), self.node(b), 1.0 / ohm) for a, b, ohm in self.topology.edges]
-        return np.array([row for row in rows if row[0] != row[1]], EDGE)
+    def _edge_numbers(self) -> list[int]:
+        """Return for each edge of the graph its row in the table, -1 where both ends are one node."""
+        kept = [i != j for i, j, _ in self.edge_rows]
+        return np.where(kept, np.cumsum(kept) - 1, -1).astype(int).tolist() if kept else []
 
-    # -- spans ---------------------------------------------------------------------------------------------------
+    def _earth_edges(self) -> NDArray[np.int64]:
+        items = self.topology.earth_links
+        numbers = iter(self._edge_numbers()[len(self.edge_rows) - sum(item.closed for item in items) :])
+        return np.array([next(numbers) if item.closed else -1 for item in items], np.int64)
 
-    def _span_tables(self) -> tuple[NDArray[np.void], NDArray[np.void], NDArray[np.int64], NDArray[np.int64]]:
-        spans: list[tuple[float | int, ...]] = []
-        conductors: list[tuple[float | int, ...]] = []
-        terminals: list[int] = []
-        scatter: list[int] = []
-        self.first_conductor: list[int] = []
-        for span in self.topology.spans:
-            left, right = self._terminals(span)
-            ends = right + left
-            slots = {node: k for k, node in enumerate(ends)}
-            self.first_conductor.append(len(conductors))
-            front = len(ends)  # fronts come behind the ends, ground behind the fronts
-            ground_slot = front + sum(conductor.ohm_per_m > 0.0 for conductor in span.conductors)
-            for conductor in span.conductors:
-                i, j = self.node(conductor.left), self.node(conductor.right)
-                ohm = conductor.ohm_per_m
-                left_slot, right_slot = slots.get(i, ground_slot), slots.get(j, ground_slot)
-                place = self.structure.place(i, j)
-                conductors.append((ohm, i, j, place, left_slot, front if ohm > 0.0 else NO_SLOT, right_slot))
-                front += ohm > 0.0
-            sizes = (len(span.conductors), front - len(ends), len(terminals), len(right), len(left), len(scatter))
-            spans.append((span.length_m, self.first_conductor[-1], *sizes))
-            terminals += ends
-            scatter += [self.structure.place(ends[i], ends[j]) for i in range(len(ends)) for j in range(i + 1)]
-        return (
-            np.array(spans, SPAN), np.array(conductors, CONDUCTOR),
-            np.array(terminals, np.int64), np.array(scatter, np.int64),
-        )  # fmt: skip
+    def _rail_nodes(self) -> NDArray[np.int64]:
+        if self.topology.earth is None:
+            return np.zeros(0, np.int64)
+        return np.array([self.node(p.node) if self._is_earthed(p.node) else -1 for p in self.topology.rail_places], np.int64)
 
-    def _terminals(self, span: Span) -> tuple[list[int], list[int]]:
-        ground = len(self.structure.order)
-        left = sorted({self.node(c.left) for c in span.conductors} - {ground})
-        right = sorted({self.node(c.right) for c in span.conductors} - {ground} - set(left))
-        return left, right
-
-    def _feeder_end(self, feeder: Feeder) -> tuple[int, int]:
-        for number, span in enumerate(self.topology.spans):
-            if feeder.track in span.returns:
-                conductor = self.first_conductor[number] + span.contact(feeder.track)
-                if feeder.side == "high_km" and span.from_km == feeder.km:
-                    return conductor, 0
-                if feeder.side == "low_km" and span.to_km == feeder.km:
-                    return conductor, 1
-        raise LookupError(f"no contact line beside the feeder {feeder}")
+    def _triggers(self, watched: Sequence[Trigger]) -> NDArray[np.void]:
+        """Return what the triggers watch; one whose breaker or device has done its work watches nothing."""
+        earth = {item.id: item for item in self.topology.earth_links}
+        places = self.topology.rail_places
+        rows = np.zeros(len(watched), TRIGGER)
+        for row, trigger in zip(rows, watched, strict=True):
+            row["above"], row["delay_s"] = trigger.above, trigger.delay_s
+            if trigger.kind == "overcurrent":
+                row["kind"], row["index"] = OVERCURRENT, trigger.number
+                rests = not self.topology.links[trigger.number].closed
+            else:
+                node = earth[trigger.device].node
+                row["kind"] = RAIL_POTENTIAL
+                row["index"] = next(k for k, place in enumerate(places) if self.find(place.node) == self.find(node))
+                rests = earth[trigger.device].closed
+            if rests:
+                row["above"] = np.inf
+        return rows
 
     def _section_table(self) -> NDArray[np.void]:
-        rows = [(self.node(contact), self.node(rail), -1) for _, _, contact, rail in self.topology.sections]
-        first = len(self.sources) + len(self.loads)
+        rows = [(self.node(place.contact), self.node(place.rail), -1) for place in self.topology.sections]
+        first = len(self.substations) + len(self.loads)
         return np.array(rows + [(-1, -1, first + k) for k in range(len(self.probes))], SECTION)
 
     def _stretches(self) -> Iterator[Stretch]:
         for number, span in enumerate(self.topology.spans):
             first = self.first_conductor[number]
-            for track, rail in span.returns.items():
-                axis, contact = self.topology.axes[track], span.contact(track)
-                ends = axis.stretch_m(span.from_km, span.to_km)
+            rail = first + len(span.tracks)
+            for contact, track in enumerate(span.tracks):
+                ends = self.topology.axes[track].stretch_m(span.from_km, span.to_km)
                 if ends is not None:
                     volts = self._no_load_v(span.conductors[contact].left)
-                    yield Stretch(track, *ends, number, first + contact, first + rail, span.length_m, volts)
+                    earthed = self._is_earthed(span.rail.left)
+                    yield Stretch(track, *ends, number, first + contact, rail, span.length_m, volts, earthed)
 
     # -- ports ---------------------------------------------------------------------------------------------------
 
     def _port_tables(self) -> tuple[NDArray[np.void], NDArray[np.void]]:
-        rows: list[Segments] = [source_segments(s) for s in self.sources]
+        rows: list[Segments] = [source_segments(s) for s in self.substations]
         rows += [load_segments(load, self.voltages) for load in self.loads]
         rows += [[(float("-inf"), 0.0, 0.0, 0.0)] for _ in self.probes]
         ports = np.zeros(len(rows), PORT)
         ports["segments"] = [len(row) for row in rows]
         ports["first_segment"] = np.cumsum(ports["segments"]) - ports["segments"]
         ports["scale"] = 1.0
-        for port, substation in zip(ports, self.sources, strict=False):
-            bus = self.topology.busbars[substation.id]
-            i, j = self.node(bus.positive), self.node(bus.negative)
-            port["span"], port["positive"], port["negative"] = -1, i, j
-            port["coupling"] = self.structure.place(i, j)
-            port["start_v"] = self._no_load_v(bus.positive)
-        first = len(self.sources)
+        feeding = {source.id for source in self.sources}
+        for port, substation in zip(ports, self.substations, strict=False):
+            port["span"] = -1
+            if substation.id in feeding:
+                bus = self.topology.busbars[substation.id]
+                i, j = self.node(bus.positive), self.node(bus.negative)
+                port["positive"], port["negative"] = i, j
+                port["coupling"] = self.structure.place(i, j)
+                port["start_v"] = self._no_load_v(bus.positive)
+            else:  # between ground and ground, without current: it keeps the numbers of the others
+                ground = len(self.structure.order)
+                port["positive"], port["negative"], port["coupling"], port["scale"] = ground, ground, ground, 0.0
+        first = len(self.substations)
         for port, load in zip(ports[first:], self.loads, strict=False):
             self._place_load(port, load)
         for port, (track, km) in zip(ports[first + len(self.loads) :], self.probes, strict=True):
@@ -300,7 +327,7 @@ class _Compiler:
         span = self.topology.spans[number]
         first, contact = self.first_conductor[number], span.contact(track)
         port["span"], port["x_m"] = number, x
-        port["positive"], port["negative"] = first + contact, first + span.returns[track]
+        port["positive"], port["negative"] = first + contact, first + len(span.tracks)
         port["start_v"] = self._no_load_v(span.conductors[contact].left)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,17 +54,22 @@ def order_nodes(nodes: int, cliques: Iterable[Iterable[int]]) -> Structure:
         members = {node for node in clique if node < nodes}
         for node in members:
             neighbours[node] |= members - {node}
-    remaining = set(range(nodes))
+    queue = [(len(others), node) for node, others in enumerate(neighbours)]
+    heapify(queue)
     order: list[int] = []
     columns: list[set[int]] = []
-    while remaining:
-        node = min(remaining, key=lambda k: (len(neighbours[k]), k))
-        remaining.discard(node)
+    done = [False] * nodes
+    while queue:
+        degree, node = heappop(queue)
+        if done[node] or degree != len(neighbours[node]):  # its degree has changed since, and it is queued again
+            continue
+        done[node] = True
         order.append(node)
         columns.append(neighbours[node])
         for other in neighbours[node]:
             neighbours[other] |= neighbours[node]
             neighbours[other] -= {other, node}
+            heappush(queue, (len(neighbours[other]), other))
     return _number(order, columns)
 
 
@@ -72,6 +78,7 @@ def _number(order: list[int], columns: list[set[int]]) -> Structure:
     rows = [sorted(rank[node] for node in column) for column in columns]
     starts = np.concatenate([[0], np.cumsum([len(column) for column in rows])]).astype(np.int64)
     flat = np.array([r for column in rows for r in column], dtype=np.int64)
-    structure = Structure(starts, flat, np.empty(0, np.int64), order)
-    target = [structure.place(column[p], column[q]) for column in rows for p in range(len(column)) for q in range(p, len(column))]
+    n = len(order)
+    place = [{r: n + 1 + first + k for k, r in enumerate(column)} for first, column in zip(starts.tolist(), rows, strict=False)]
+    target = [i if i == j else place[i][j] for column in rows for p, i in enumerate(column) for j in column[p:]]
     return Structure(starts, flat, np.array(target, dtype=np.int64), order)

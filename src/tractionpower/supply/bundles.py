@@ -1,0 +1,148 @@
+"""Where conductors lie along the tracks: bundles of tracks, cut wherever something happens on one of them.
+
+Tracks that share a return conductor form a *bundle*. Between two neighbouring cuts of a bundle nothing happens: there lie
+spans. At a cut every contact line has a low and a high side, and the rails one node for each of their rows.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from tractionpower.kernels.tables import SHARED_NODE_M
+from tractionpower.model.conductors import Conductor
+from tractionpower.model.line import Line
+from tractionpower.model.supply import ReturnCircuit, Supply
+from tractionpower.supply.conductors import contact_line_resistance, return_resistance
+
+SHARED_KM = SHARED_NODE_M / 1000.0
+LOW, HIGH = "low_km", "high_km"
+
+
+@dataclass(frozen=True, slots=True)
+class Rails:
+    """A row of the return circuit within a bundle."""
+
+    number: int
+    tracks: tuple[str, ...]
+    ohm_per_m: float
+    siemens_per_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    tracks: tuple[str, ...]
+    from_km: float
+    to_km: float
+    ohm_per_m: float
+    siemens_per_m: float
+    number: int
+
+
+class Bundle:
+    """Tracks that share return conductors, and what lies between the cuts.
+
+    Attributes
+    ----------
+    tracks
+        Identifiers, sorted.
+    cuts
+        Kilometres of the cuts, rising.
+    contacts
+        For each piece between two cuts the resistance of the contact line of each track that has one [ohm/m].
+    rails
+        For each piece the return conductors.
+    """
+
+    def __init__(self, tracks: Sequence[str], supply: Supply, line: Line, conductors: Sequence[Conductor]) -> None:
+        self.tracks = tuple(tracks)
+        self.ends = {track.id: (track.from_km, track.to_km) for track in line.tracks if track.id in tracks}
+        self._contact_rows = [
+            _Row((track,), row.from_km, row.to_km, contact_line_resistance(row, conductors) / 1000.0, 0.0, number)
+            for number, row in enumerate(supply.contact_lines)
+            for track in self.tracks
+            if row.tracks is None or track in row.tracks
+        ]
+        self._rail_rows = []
+        for number, row in enumerate(supply.return_circuit):
+            members = return_tracks(row, line)
+            own = tuple(track for track in self.tracks if track in members)
+            if own:
+                ohm = return_resistance(row, len(members), conductors) / 1000.0
+                self._rail_rows.append(_Row(own, row.from_km, row.to_km, ohm, row.leakage_s_per_km / 1000.0, number))
+        self.cuts: list[float] = []
+        self.contacts: list[dict[str, float]] = []
+        self.rails: list[list[Rails]] = []
+
+    def cut_at(self, kms: Iterable[float]) -> None:
+        """Cut the bundle at places of devices, and where conductors begin, end or change."""
+        every = [*kms]
+        for row in (*self._contact_rows, *self._rail_rows):
+            low = min(self.ends[track][0] for track in row.tracks)
+            high = max(self.ends[track][1] for track in row.tracks)
+            every += [max(row.from_km, low), min(row.to_km, high)]
+        for km in sorted(every):
+            if not self.cuts or km - self.cuts[-1] >= SHARED_KM:
+                self.cuts.append(km)
+        middles = [0.5 * (low + high) for low, high in zip(self.cuts, self.cuts[1:], strict=False)]
+        self.contacts = [self._contacts_over(km) for km in middles]
+        self.rails = [self._rails_over(km) for km in middles]
+
+    def _contacts_over(self, km: float) -> dict[str, float]:
+        return {
+            row.tracks[0]: row.ohm_per_m
+            for row in self._contact_rows
+            if row.from_km <= km <= row.to_km and self._exists(row.tracks[0], km)
+        }
+
+    def _rails_over(self, km: float) -> list[Rails]:
+        found = []
+        for row in self._rail_rows:
+            tracks = tuple(track for track in row.tracks if self._exists(track, km))
+            if tracks and row.from_km <= km <= row.to_km:
+                found.append(Rails(row.number, tracks, row.ohm_per_m, row.siemens_per_m))
+        return found
+
+    def _exists(self, track: str, km: float) -> bool:
+        low, high = self.ends[track]
+        return low <= km <= high
+
+    def cut(self, km: float) -> int:
+        """Return the number of the cut nearest to a kilometre."""
+        after = bisect_left(self.cuts, km)
+        return min((n for n in (after - 1, after) if 0 <= n < len(self.cuts)), key=lambda n: abs(self.cuts[n] - km))
+
+    def sides(self, track: str, cut: int) -> list[str]:
+        """Return on which sides of a cut the track has a contact line."""
+        found = []
+        if cut > 0 and track in self.contacts[cut - 1]:
+            found.append(LOW)
+        if cut < len(self.contacts) and track in self.contacts[cut]:
+            found.append(HIGH)
+        return found
+
+    def rails_at(self, track: str, cut: int) -> list[Rails]:
+        """Return the return conductors of a track beside a cut, the low side first."""
+        beside = [*(self.rails[cut - 1] if cut > 0 else ()), *(self.rails[cut] if cut < len(self.rails) else ())]
+        return [rails for rails in beside if track in rails.tracks]
+
+
+def find_bundles(supply: Supply, line: Line, conductors: Sequence[Conductor]) -> list[Bundle]:
+    """Return the bundles of a line in the order of their first tracks."""
+    label: dict[str, str] = {track.id: track.id for track in line.tracks}
+    for row in supply.return_circuit:
+        own = sorted(return_tracks(row, line))
+        old = {label[track] for track in own}
+        label = {track: min(old) if mine in old else mine for track, mine in label.items()}
+    groups: Mapping[str, list[str]] = defaultdict(list)
+    for track in sorted(label):
+        groups[label[track]].append(track)
+    return [Bundle(tracks, supply, line, conductors) for tracks in groups.values()]
+
+
+def return_tracks(row: ReturnCircuit, line: Line) -> set[str]:
+    """Return the tracks of the line that a row of the return circuit belongs to."""
+    known = {track.id for track in line.tracks}
+    return known if row.tracks is None else known & set(row.tracks)
