@@ -16,7 +16,7 @@ from tractionpower.results.spells import TOLERANCE_V
 from tractionpower.results.tables import make_table
 from tractionpower.supply.compile import SupplyTables
 
-_ORDER = {"train_entered": 0, "departure": 2, "train_left": 3}
+_ORDER = {"tripped": 0, "switched": 0, "vld_closed": 0, "train_entered": 0, "departure": 2, "train_left": 3}
 """Kinds of events that come before or after others of the same time."""
 
 KINDS = {NOT_SERVABLE: "not_servable", NOT_CONVERGED: "not_converged"}
@@ -136,6 +136,23 @@ def _limit_violated(row: dict[str, Any]) -> str:
     return f"{row['subject']}: {row['value']:.1f} {row['unit']}{at}, {row['limit_name']} is {row['limit']:g} {row['unit']}"
 
 
+def _switched(row: dict[str, Any]) -> str:
+    name, value = row["change"]
+    if name == "units_in_service":
+        return f"{value} rectifier units in service from now on"
+    by = {"order": "", "reclosure": ", by itself after a trip", "reopening": ", by itself"}[row["cause"]]
+    return f"{str(value).replace('_', ' ')}{by}"
+
+
+def _tripped(row: dict[str, Any]) -> str:
+    told = f"trips at {abs(row['value']):.0f} A, above {row['limit']:g} A"
+    if row["again_s"] is None:
+        return f"{told}; stays open"
+    if not row["number"]:
+        return f"{told}; stays open, since it has closed by itself as often as it may"
+    return f"{told}; closes by itself after {row['again_s']:g} s (number {row['number']})"
+
+
 _TOLD: dict[str, Callable[[dict[str, Any]], str]] = {
     "not_servable": _not_servable,
     "not_converged": lambda row: (
@@ -155,6 +172,11 @@ _TOLD: dict[str, Callable[[dict[str, Any]], str]] = {
     "stop": lambda row: f"stops at {row['station']}",
     "departure": lambda row: f"departs from {row['station']}",
     "limit_violated": _limit_violated,
+    "switched": _switched,
+    "tripped": _tripped,
+    "vld_closed": lambda row: f"closes: the rail potential is {row['value']:.1f} V, above {row['limit']:g} V",
+    "line_dead": lambda row: f"nothing feeds the contact line from km {row['position_km']:g} to km {row['to_km']:g}",
+    "line_live": lambda row: f"the contact line is fed again from km {row['position_km']:g} to km {row['to_km']:g}",
 }
 
 

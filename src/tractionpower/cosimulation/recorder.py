@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -29,9 +29,10 @@ from tractionpower.results.key_figures import (
 )
 from tractionpower.results.ledgers import ElectricLedger
 from tractionpower.results.spells import TOLERANCE_V
-from tractionpower.results.tables import feeders_table, loads_table, make_table, substations_table
+from tractionpower.results.tables import feeders_table, loads_table, make_table, substations_table, switches_table
 from tractionpower.results.trains import calls_table, trains_table
-from tractionpower.supply.characteristics import no_load_voltage
+from tractionpower.supply.characteristics import dissipative_resistance, no_load_voltage
+from tractionpower.supply.compile import SupplyTables
 
 
 class Recorder:
@@ -47,15 +48,13 @@ class Recorder:
         self.figures_from_s = clock.start + (clock.warm_up or 0.0)
         wanted = scenario.output.tables
         self.wanted = set(TABLES if wanted is None else wanted)
-        feeds = supply.source_port >= 0
-        self.no_load_v = np.where(feeds, [no_load_voltage(s) for s in supply.substations], np.nan)
-        one_way = [substation.conducts == "forward" for substation in supply.substations]
-        self.rectifier_v = np.where(one_way, self.no_load_v, np.nan)  # a plant that conducts both ways never blocks
-        self.dissipative_ohm = np.array([_given(s.dissipative_resistance_ohm) for s in supply.substations])
         self.substation_a = Extremes(len(supply.substations))
         self.substation_w = Extremes(len(supply.substations))
         self.load_v, self.load_w = Extremes(len(supply.loads)), Extremes(len(supply.loads))
-        self.feeders = [k for k, link in enumerate(supply.links) if link.kind in ("feeder", "return")]
+        kinds = [link.kind for link in supply.links]
+        self.feeders = [k for k, kind in enumerate(kinds) if kind in ("feeder", "return")]
+        self.cabins = [k for k, kind in enumerate(kinds) if kind == "cabin"]
+        self.switches = [k for k, kind in enumerate(kinds) if kind == "switch"]
         self.section_v = Extremes(len(supply.sections))
         self.windows = SubstationWindows.of(len(supply.substations), clock.step_s)
         self.ledger, self.counted = ElectricLedger(), ElectricLedger()
@@ -65,8 +64,9 @@ class Recorder:
 
     # -- rows ----------------------------------------------------------------------------------------------------
 
-    def add(self, first_step: int, rows: int, buffers: Buffers) -> None:
-        """Take the first `rows` of `buffers`; they are the steps from `first_step` on."""
+    def add(self, first_step: int, rows: int, buffers: Buffers, supply: SupplyTables) -> None:
+        """Take the first `rows` of `buffers`: the steps from `first_step` on, with the devices in the states of `supply`."""
+        self.supply = supply
         number = np.arange(first_step, first_step + rows)
         time_s: Array = self.scenario.clock.start + number.astype(float) * self.step_s
         taken = take_rows(buffers, slice(rows))
@@ -85,7 +85,9 @@ class Recorder:
         self.steps += len(rows.steps)
         self.ledger.add(rows.steps, self.step_s)
         self.events.add(time_s, rows.steps)
-        self.events.add_blocked(time_s, rows.source_v, self.rectifier_v)
+        one_way = [substation.conducts == "forward" for substation in self.supply.substations]
+        rectifier_v = np.where(one_way, self._no_load_v(), np.nan)  # a plant that conducts both ways never blocks
+        self.events.add_blocked(time_s, rows.source_v, rectifier_v)
         counted = time_s >= self.figures_from_s - 1e-9
         t, rows = time_s[counted], take_rows(rows, counted)
         self.counted.add(rows.steps, self.step_s)
@@ -93,7 +95,8 @@ class Recorder:
         power = np.nan_to_num(rows.source_v) * rows.source_a
         self.substation_w.add(t, power)
         self.windows.add(t, rows.source_a, power)
-        self.load_v.add(t, rows.load_v)
+        fed = self.supply.network.ports["start_v"][self.supply.load_port] > 0.0
+        self.load_v.add(t, np.where(fed, rows.load_v, np.nan))
         self.load_w.add(t, rows.load_v * rows.load_a)
         self.section_v.add(t, rows.section_v)
 
@@ -103,27 +106,44 @@ class Recorder:
             names = [substation.id for substation in supply.substations]
             append(
                 "substations",
-                substations_table(time_s, names, self.no_load_v, self.dissipative_ohm, rows.source_v, rows.source_a),
+                substations_table(time_s, names, self._no_load_v(), self._dissipative_ohm(), rows.source_v, rows.source_a),
             )
         if "feeders" in self.wanted and self.feeders:
             feeders = [(link.station, link.track, link.side) for link in (supply.links[k] for k in self.feeders)]
             append("feeders", feeders_table(time_s, feeders, rows.link_a[:, self.feeders]))
+        if "cabins" in self.wanted and self.cabins:
+            links = [supply.links[k] for k in self.cabins]
+            places = [(link.station, link.track, link.side) for link in links]
+            append("cabins", feeders_table(time_s, places, rows.link_a[:, self.cabins], "cabins"))
+        if "switches" in self.wanted and self.switches:
+            links = [supply.links[k] for k in self.switches]
+            append("switches", switches_table(time_s, [(link.id, link.closed) for link in links], rows.link_a[:, self.switches]))
         if "loads" in self.wanted and supply.loads:
             append("loads", loads_table(time_s, [load.id for load in supply.loads], rows.load_v, rows.load_a))
+
+    def _no_load_v(self) -> Array:
+        """Return E of the substations that feed in the present states [V], NaN for others."""
+        supply = self.supply
+        return np.where(supply.source_port >= 0, [no_load_voltage(s) for s in supply.substations], np.nan)
+
+    def _dissipative_ohm(self) -> Array:
+        """Return the dissipative part of their resistance with the units in service [ohm], NaN where not given."""
+        return np.array([_given(dissipative_resistance(substation)) for substation in self.supply.substations])
 
     def _write_trains(self, rows: NDArray[np.void], track: NDArray[np.int64], km: Array) -> None:
         trains = self.trains
         table = trains_table(rows, (rows["train"], trains.names), (track, trains.places.tracks), km)
         self.writer.append("trains", table)
 
-    def close(self) -> None:
-        """Write the tables that are known at the end only."""
+    def close(self, switched: Sequence[dict[str, Any]] = ()) -> None:
+        """Write the tables that are known at the end only; `switched` are the events of what was switched."""
         calls = self.trains.note_calls()
         if "calls" in self.wanted and calls:
             self.writer.append("calls", calls_table(calls))
         if "profile" in self.wanted:
             self.writer.append("profile", make_table("profile", self._profile()))
         if "events" in self.wanted:
+            self.events.add_rows(switched)
             self.events.add_rows(self.trains.events.rows)
             self.events.add_violations(self._verdicts())
             self.writer.append("events", self.events.table())
@@ -207,11 +227,12 @@ class Recorder:
             (float(extreme.value[k]), self.trains.where(extreme, k), float(extreme.time_s[k]))
             for k in np.flatnonzero(self.trains.seen).tolist()
         ]
-        best: tuple[float, str, float] = pick(found, key=lambda item: item[0])
+        known = [item for item in found if np.isfinite(item[0])]  # a contact line that nothing feeds has no voltage
+        best: tuple[float, str, float] = pick(known, key=lambda item: item[0], default=(np.nan, "", np.nan))
         return best
 
     def _verdicts(self) -> list[dict[str, Any]]:
-        if not self.section_v.count:
+        if not self.section_v.count or not np.isfinite(self._lowest()[0]):
             return []
         return list(self._judge())
 
@@ -267,8 +288,11 @@ class Recorder:
             return []
         substations = [substation.id for substation in self.supply.substations]
         figures = [
-            voltage_figure("lowest", *self._lowest()),
-            voltage_figure("highest", *self._highest()),
+            *(
+                voltage_figure(which, *found)
+                for which, found in (("lowest", self._lowest()), ("highest", self._highest()))
+                if np.isfinite(found[0])
+            ),
             *self._spell_figures(),
             *substation_figures(substations, self.substation_a, self.substation_w, self.step_s),
             *window_figures(substations, self.windows),

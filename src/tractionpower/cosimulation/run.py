@@ -13,10 +13,11 @@ import pyarrow as pa
 from tractionpower.cosimulation.check import check_scenario, step_count
 from tractionpower.cosimulation.recorder import Recorder
 from tractionpower.cosimulation.start import start_state
+from tractionpower.cosimulation.switching import Switchboard
 from tractionpower.cosimulation.tables import compile_scenario, coupling_voltage
 from tractionpower.errors import Problem, raise_errors
 from tractionpower.kernels.block import advance
-from tractionpower.kernels.block_tables import Buffers, new_buffers
+from tractionpower.kernels.block_tables import TRIGGERED, Buffers, State, new_buffers
 from tractionpower.kernels.train_tables import TRAIN_ROW
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.versions import versions
@@ -88,8 +89,9 @@ class Run:
         self.warnings = tuple(problems)
         self.compiled = compile_scenario(scenario)
         self.steps = step_count(scenario.clock)
-        self.state = start_state(self.compiled)
-        self.recorder = Recorder(scenario, self.compiled, self.state, writer)
+        state = start_state(self.compiled)
+        self.board = Switchboard(scenario, self.compiled, state)
+        self.recorder = Recorder(scenario, self.compiled, state, writer)
         self._closed = False
         self.compile_seconds = time.perf_counter() - started
         self.wall_seconds = 0.0
@@ -99,9 +101,9 @@ class Run:
 
         After an interruption `outcome` still tells what was done; rows computed so far are with the writer.
         """
-        tables, buffers, spare = self.compiled.block, self._new_buffers(), self._new_buffers()
+        board, buffers, spare = self.board, self._new_buffers(), self._new_buffers()
         started, block = time.perf_counter(), FIRST_BLOCK
-        advance(tables, self.state, buffers, self.done)  # no step: compiles the kernels, or takes them from the cache
+        advance(self.compiled.block, self.state, buffers, self.done)  # no step: kernels are compiled or taken from the cache
         self.compile_seconds += time.perf_counter() - started
         started = time.perf_counter()
         with ThreadPoolExecutor(1) as recording:  # the block holds no lock: rows are recorded while the next ones are computed
@@ -109,11 +111,16 @@ class Run:
             try:
                 while self.done < self.steps:
                     block_started = time.perf_counter()
-                    rows, _ = advance(tables, self.state, buffers, min(self.done + block, self.steps))
+                    board.move(self.done)
+                    until = min(self.done + block, self.steps, board.next_step)
+                    compiled = board.compiled
+                    rows, reason = advance(compiled.block, board.state, buffers, until)
+                    if reason == TRIGGERED:
+                        board.react(self.done, rows - 1, buffers)
                     pace = (time.perf_counter() - block_started) / max(rows, 1)
                     if pending is not None:
                         pending.result()
-                    pending = recording.submit(self.recorder.add, self.done - rows, rows, buffers)
+                    pending = recording.submit(self.recorder.add, self.done - rows, rows, buffers, compiled.supply)
                     buffers, spare = spare, buffers
                     block = max(FIRST_BLOCK, int(BLOCK_S / max(pace, 1e-9))) if self.done > FIRST_BLOCK else FIRST_BLOCK
                     self.wall_seconds = time.perf_counter() - started
@@ -124,10 +131,15 @@ class Run:
                     pending.result()
                 ahead = self.done - self.recorder.steps
                 if ahead > 0:
-                    self.recorder.add(self.recorder.steps, ahead, buffers)
-                self.recorder.close()
+                    self.recorder.add(self.recorder.steps, ahead, buffers, board.compiled.supply)
+                self.recorder.close(board.rows)
         self._closed = True
         return self.outcome()
+
+    @property
+    def state(self) -> State:
+        """State of the run after the last step."""
+        return self.board.state
 
     @property
     def done(self) -> int:

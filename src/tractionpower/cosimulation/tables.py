@@ -12,6 +12,7 @@ from tractionpower.alignment.path import RoutePath
 from tractionpower.kernels.block_tables import FLEET, LOAD, SOURCE, WAY, BlockTables
 from tractionpower.kernels.train_port import ROOM
 from tractionpower.model.scenario import Scenario
+from tractionpower.model.supply import Supply
 from tractionpower.movement.compile import Movement, compile_trains
 from tractionpower.supply.characteristics import no_load_voltage
 from tractionpower.supply.compile import Stretch, SupplyTables, compile_network
@@ -42,9 +43,16 @@ class CompiledScenario:
 
 def compile_scenario(scenario: Scenario) -> CompiledScenario:
     """Return the tables of a scenario of which `check.check_scenario` has found no errors."""
-    movement = compile_trains(scenario)
+    return assemble(scenario, compile_trains(scenario), scenario.supply)
+
+
+def assemble(scenario: Scenario, movement: Movement, states: Supply) -> CompiledScenario:
+    """Return the tables of trains in a supply whose devices have the states that `states` says.
+
+    The numbers of ports, links, places and triggers do not depend on the states.
+    """
     room = [ROOM + 2 * int(train["curves"] + train["powers"]) for train in movement.tables.trains]
-    supply = compile_network(scenario.supply, scenario.line, scenario.limits, room)
+    supply = compile_network(states, scenario.line, scenario.limits, room, scenario.conductors)
     fleet, ways = _compile_fleet(movement, supply, room)
     clock = np.array([scenario.clock.start, scenario.clock.step_s, coupling_voltage(scenario, supply) or 0.0])
     entries = np.argsort(movement.tables.trains["start_s"], kind="stable").astype(np.int64)

@@ -179,5 +179,7 @@ def _record(tables, state, buffers, row):
         section = tables.sections[k]
         if section.port >= 0:
             buffers.section_v[row, k] = work.ports[section.port].u
+        elif section.contact < 0:
+            buffers.section_v[row, k] = np.nan
         else:
             buffers.section_v[row, k] = work.node_v[section.contact] - work.node_v[section.rail]

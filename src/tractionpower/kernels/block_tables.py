@@ -18,7 +18,7 @@ LOAD = np.dtype([("port", "i8"), ("from_s", "f8"), ("to_s", "f8")])
 """A fixed load and the times of day between which it is on."""
 
 SECTION = np.dtype([("contact", "i8"), ("rail", "i8"), ("port", "i8")])
-"""A place whose voltage is recorded: two skeleton nodes, or a port in a span (else -1)."""
+"""A place whose voltage is recorded: two skeleton nodes, or a port in a span (else -1); neither where nothing feeds."""
 
 OVERCURRENT, RAIL_POTENTIAL = 0, 1
 """What a trigger watches: the current of a link, the potential of a node against earth, both regardless of their sign."""
@@ -184,6 +184,22 @@ def new_state(tables: BlockTables) -> State:
         way=np.zeros(trains, np.int64),
         breaks=np.zeros(BREAKS),
     )
+
+
+def rewired_state(state: State, before: BlockTables, after: BlockTables) -> State:
+    """Return a state for tables of the same ports whose network is another one: it is solved anew, all else goes on.
+
+    The trains stay where they are; `state` must not be used any more.
+    """
+    work, trains = new_work(after.network), len(after.fleet)
+    work.order[:] = state.work.order
+    work.in_service[:] = state.work.in_service
+    first = len(after.network.ports) - trains
+    kept = ["span", "positive", "negative", "x_m", "scale"]
+    for name in kept:
+        after.network.ports[name][first:] = before.network.ports[name][first:]
+    state.progress["solved"], state.progress["stale"] = False, True
+    return state._replace(work=work, balance=np.zeros(after.network.nodes + 1))
 
 
 def copy_state(state: State) -> State:

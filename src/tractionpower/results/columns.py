@@ -77,8 +77,21 @@ TABLES: dict[str, tuple[Column, ...]] = {
         TIME,
         _column("substation", "Identifier of the substation.", "text"),
         _column("track", "Track that the feeder supplies.", "text"),
+        _column("side", "Side that it supplies: low_km or high_km; return: from the rails of this track.", "text"),
+        _column("current_a", "Current from the busbar into the contact line, or from the rails into the negative busbar."),
+    ),
+    "cabins": (
+        TIME,
+        _column("section_cabin", "Identifier of the section cabin.", "text"),
+        _column("track", "Track that the feeder supplies.", "text"),
         _column("side", "Side that it supplies: low_km or high_km.", "text"),
         _column("current_a", "Current from the busbar into the contact line."),
+    ),
+    "switches": (
+        TIME,
+        _column("switch", "Identifier of the switch.", "text"),
+        _column("closed", "Whether it is closed.", "bool"),
+        _column("current_a", "Current from its first side to its second."),
     ),
     "loads": (
         TIME,

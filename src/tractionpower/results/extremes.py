@@ -14,7 +14,7 @@ def add_up(total: Array, values: Array) -> Array:
 
 
 class Extremes:
-    """Lowest, highest and mean of several series, with the time of the extremes.
+    """Lowest, highest and mean of several series, with the time of the extremes; values that are not a number count nothing.
 
     Parameters
     ----------
@@ -26,6 +26,7 @@ class Extremes:
         self.lowest, self.highest = np.full(width, np.inf), np.full(width, -np.inf)
         self.lowest_s, self.highest_s = np.full(width, np.nan), np.full(width, np.nan)
         self.total, self.squares = np.zeros(width), np.zeros(width)
+        self.counts = np.zeros(width, np.int64)
         self.count = 0
 
     def add(self, time_s: Array, values: Array) -> None:
@@ -33,23 +34,28 @@ class Extremes:
         if not values.size:
             return
         columns = np.arange(values.shape[1])
-        for pick, best, when, better in (
-            (values.argmin(axis=0), self.lowest, self.lowest_s, np.less),
-            (values.argmax(axis=0), self.highest, self.highest_s, np.greater),
+        gaps = bool(np.isnan(values.sum()))
+        low = np.where(np.isnan(values), np.inf, values) if gaps else values
+        high = np.where(np.isnan(values), -np.inf, values) if gaps else values
+        for pick, series, best, when, better in (
+            (low.argmin(axis=0), low, self.lowest, self.lowest_s, np.less),
+            (high.argmax(axis=0), high, self.highest, self.highest_s, np.greater),
         ):
-            found = values[pick, columns]
+            found = series[pick, columns]
             new = better(found, best)
             best[new], when[new] = found[new], time_s[pick][new]
-        self.total = add_up(self.total, values)
-        self.squares = add_up(self.squares, values**2)
+        present = np.where(np.isnan(values), 0.0, values) if gaps else values
+        self.total = add_up(self.total, present)
+        self.squares = add_up(self.squares, present**2)
+        self.counts += len(values) - np.isnan(values).sum(axis=0) if gaps else len(values)
         self.count += len(values)
 
     @property
     def mean(self) -> Array:
         """Mean of each series."""
-        return self.total / max(self.count, 1)
+        return self.total / np.maximum(self.counts, 1)
 
     @property
     def rms(self) -> Array:
         """Root of the mean square of each series."""
-        return np.asarray(np.sqrt(self.squares / max(self.count, 1)))
+        return np.asarray(np.sqrt(self.squares / np.maximum(self.counts, 1)))

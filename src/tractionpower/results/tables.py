@@ -87,15 +87,25 @@ def substations_table(
     )
 
 
-def feeders_table(time_s: Array, feeders: Sequence[tuple[str, str, str]], current_a: Array) -> pa.Table:
-    """Return the rows of table ``feeders``; `feeders` are (substation, track, side), currents of shape (steps, n)."""
+def feeders_table(time_s: Array, feeders: Sequence[tuple[str, str, str]], current_a: Array, table: str = "feeders") -> pa.Table:
+    """Return the rows of table ``feeders`` or ``cabins``.
+
+    `feeders` are (substation or section cabin, track, side), currents of shape (steps, n).
+    """
     steps = len(time_s)
     texts = {}
-    for position, name in enumerate(("substation", "track", "side")):
+    for position, name in enumerate(("substation" if table == "feeders" else "section_cabin", "track", "side")):
         words = [feeder[position] for feeder in feeders]
         known = sorted(set(words))
         texts[name] = (np.tile([known.index(word) for word in words], steps), known)
-    return make_table("feeders", {"time_s": np.repeat(time_s, len(feeders)), "current_a": current_a.ravel(), **texts})
+    return make_table(table, {"time_s": np.repeat(time_s, len(feeders)), "current_a": current_a.ravel(), **texts})
+
+
+def switches_table(time_s: Array, switches: Sequence[tuple[str, bool]], current_a: Array) -> pa.Table:
+    """Return the rows of table ``switches``; `switches` are (identifier, closed), currents of shape (steps, n)."""
+    closed = np.tile([is_closed for _, is_closed in switches], len(time_s))
+    rows = _by_device(time_s, "switch", [name for name, _ in switches])
+    return make_table("switches", rows | {"closed": closed, "current_a": current_a.ravel()})
 
 
 def loads_table(time_s: Array, names: Sequence[str], voltage_v: Array, current_a: Array) -> pa.Table:

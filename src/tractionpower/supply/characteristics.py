@@ -39,6 +39,15 @@ def internal_resistance(substation: Substation) -> float:
     return (substation.internal_resistance_ohm - grid) * substation.units / k + grid
 
 
+def dissipative_resistance(substation: Substation) -> float | None:
+    """Return the dissipative part of the internal resistance with the units in service [ohm], None where not given.
+
+    The grid is taken to dissipate nothing.
+    """
+    k, given = substation.units_in_service or substation.units, substation.dissipative_resistance_ohm
+    return None if given is None else given * substation.units / k
+
+
 def no_load_voltage(substation: Substation) -> float:
     """Return the no-load voltage E at the present grid voltage [V]."""
     return substation.no_load_voltage_v * substation.grid_voltage_pu

@@ -28,6 +28,9 @@ from tractionpower.supply.span_tables import span_tables
 from tractionpower.supply.topology import Link, RailPlace, Topology
 from tractionpower.supply.wiring import build_topology
 
+_DEAD = (-1, -1, -1)
+"""A place whose contact line nothing feeds: it has no voltage."""
+
 CEILING_FACTOR = 5.0
 """Multiple of the no-load voltage above which feeding back without limits counts as not served."""
 
@@ -40,8 +43,8 @@ class Stretch:
     ----------
     track
         Identifier of the track.
-    from_m, to_m
-        Ends by the distance from the start of the track [m].
+    from_m, to_m, ends_km
+        Ends by the distance from the start of the track [m] and by kilometre.
     span, positive, negative
         Numbers of the span and of the conductors.
     length_m
@@ -55,6 +58,7 @@ class Stretch:
     track: str
     from_m: float
     to_m: float
+    ends_km: tuple[float, float]
     span: int
     positive: int
     negative: int
@@ -271,9 +275,16 @@ class _Compiler:
         return rows
 
     def _section_table(self) -> NDArray[np.void]:
-        rows = [(self.node(place.contact), self.node(place.rail), -1) for place in self.topology.sections]
+        places = self.topology.sections
+        live = [self._no_load_v(place.contact) > 0.0 for place in places]
+        rows = [(self.node(p.contact), self.node(p.rail), -1) if fed else _DEAD for p, fed in zip(places, live, strict=True)]
         first = len(self.substations) + len(self.loads)
-        return np.array(rows + [(-1, -1, first + k) for k in range(len(self.probes))], SECTION)
+        for k, (track, km) in enumerate(self.probes):
+            number, _ = self.topology.locate(track, km)
+            span = self.topology.spans[number]
+            fed = self._no_load_v(span.conductors[span.contact(track)].left) > 0.0
+            rows.append((-1, -1, first + k) if fed else _DEAD)
+        return np.array(rows, SECTION)
 
     def _stretches(self) -> Iterator[Stretch]:
         for number, span in enumerate(self.topology.spans):
@@ -284,7 +295,8 @@ class _Compiler:
                 if ends is not None:
                     volts = self._no_load_v(span.conductors[contact].left)
                     earthed = self._is_earthed(span.rail.left)
-                    yield Stretch(track, *ends, number, first + contact, rail, span.length_m, volts, earthed)
+                    kms, number_of = (span.from_km, span.to_km), first + contact
+                    yield Stretch(track, *ends, kms, number, number_of, rail, span.length_m, volts, earthed)
 
     # -- ports ---------------------------------------------------------------------------------------------------
 
