@@ -22,8 +22,11 @@ from tractionpower.model.supply import Supply
 from tractionpower.supply.compile import SupplyTables, compile_network
 
 NO_LOAD_V, SOURCE_OHM = 3600.0, 0.12
-CIRCUITS = {"loop": (0.06, 0.0), "common_return": (0.05, 0.01)}
-"""Contact line of one track and rails of both tracks together [ohm/km]; loop: all of it in the contact line."""
+CIRCUITS = {"loop": (0.06, 0.0), "common_return": (0.05, 0.01), "rails_per_track": (0.05, 0.01)}
+"""Contact line of one track and rails of both tracks together [ohm/km]; loop: all of it in the contact line; rails per
+track: twice their resistance each, bonds every 500 m, leakage of 0.1 S/km of each track."""
+
+BOND_KM, LEAKAGE_S_PER_KM = 0.5, 0.1
 
 
 @dataclass(frozen=True)
@@ -58,10 +61,17 @@ class Case:
                 "substations": [{"id": f"S{k:03d}", "km": km} | plant for k, km in enumerate(self.substation_kms.tolist())],
                 "section_cabins": [{"id": f"C{k:03d}", "km": km} for k, km in enumerate(self.cabin_kms.tolist())],
                 "contact_lines": [stretch | {"resistance_ohm_per_km": contact}],
-                "return_circuit": [stretch | {"resistance_ohm_per_km": rails}],
+                **self._return_circuit(circuit, rails),
                 "loads": [{"id": f"T{k:03d}", "track": "12"[k % 2], "km": 0.5, "power_kw": 0.0} for k in range(self.trains)],
             }
         )
+
+    def _return_circuit(self, circuit: str, ohm: float) -> dict[str, object]:
+        stretch = {"from_km": 0.0, "to_km": self.length_km}
+        if circuit != "rails_per_track":
+            return {"return_circuit": [stretch | {"resistance_ohm_per_km": ohm}]}
+        own = stretch | {"resistance_ohm_per_km": 2.0 * ohm, "leakage_s_per_km": LEAKAGE_S_PER_KM}
+        return {"return_circuit": [own | {"tracks": [t]} for t in "12"], "bonds": [stretch | {"every_km": BOND_KM}]}
 
 
 CASES = {
@@ -99,7 +109,7 @@ class MovingCase:
     case: Case
     tables: SupplyTables
     work: Work
-    spot: tuple[int, float, NDArray[np.int64]]
+    spot: tuple[int, NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
     trains: Trains
 
     @property
@@ -136,10 +146,15 @@ def compile_case(case: Case, circuit: str, conducts: str = "forward") -> MovingC
     network.ports["floor_v"][first_port:] = 0.0
     network = network._replace(segments=segments)
     tables = SupplyTables(**{name: getattr(tables, name) for name in tables.__slots__} | {"network": network})
-    first = network.spans["first_conductor"]
-    conductors = np.array([first, first + 1, first + 2])
-    span_m = 1000.0 * case.length_km / len(network.spans)
-    return MovingCase(case, tables, new_work(network), (first_port, span_m, conductors), draw_trains(case))
+    return MovingCase(case, tables, new_work(network), (first_port, *_spots(tables)), draw_trains(case))
+
+
+def _spots(tables: SupplyTables) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return by track the places of the cuts [m], the spans between them, their contact lines and their rails."""
+    found = [sorted((s.from_m, s.to_m, s.span, s.positive, s.negative) for s in tables.stretches if s.track == t) for t in "12"]
+    cuts = np.array([[row[0] for row in rows] + [rows[-1][1]] for rows in found])
+    spans, contact, rails = (np.array([[row[k] for row in rows] for rows in found], np.int64) for k in (2, 3, 4))
+    return cuts, spans, contact, rails
 
 
 def shipped_voltages() -> tuple[Limit, ...]:

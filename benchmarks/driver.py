@@ -57,16 +57,17 @@ def write_train(segments, first, p):
 def set_train(network, spot, k, x, p):
     """Put train `k` at `x` [m] of the line with the power `p` [W].
 
-    `spot` bundles the port of the first train, the length of a span [m], and the conductors by track and span with the
-    rails as third row.
+    `spot` bundles the port of the first train and, by track, the places of the cuts [m], the spans between them and their
+    conductors: contact line, rails.
     """
-    first_port, span_m, conductors = spot
-    s = min(int(x / span_m), conductors.shape[1] - 1)
+    first_port, cuts, spans, contact, rails = spot
+    track = k % 2
+    n = min(max(np.searchsorted(cuts[track], x, side="right") - 1, 0), spans.shape[1] - 1)
     port = network.ports[first_port + k]
-    port.span = s
-    port.x_m = x - s * span_m
-    port.positive = conductors[k % 2, s]
-    port.negative = conductors[2, s]
+    port.span = spans[track, n]
+    port.x_m = x - cuts[track, n]
+    port.positive = contact[track, n]
+    port.negative = rails[track, n]
     write_train(network.segments, port.first_segment, p)
 
 
@@ -74,7 +75,7 @@ def set_train(network, spot, k, x, p):
 def move_trains(network, spot, trains, t):
     """Place all trains and set their characteristics at the time `t` [s]."""
     start_m, direction, phase_s, power_w = trains
-    length = spot[1] * spot[2].shape[1]
+    length = spot[1][0, -1]
     for k in range(start_m.shape[0]):
         x = (start_m[k] + direction[k] * SPEED_MPS * t) % length
         set_train(network, spot, k, x, power_w[k] * cycle_share(t + phase_s[k]))

@@ -55,7 +55,7 @@ def conductor_flows(network, work, balance):
             loss += heat
             worst = max(worst, gap)
         for c in range(span.first_conductor, span.first_conductor + span.conductors):
-            heat, gap = _finish(network.conductors[c], work.conductors[c], work.node_v, span.length_m, balance)
+            heat, gap = _finish(network.conductors[c], work.conductors[c], work.node_v, balance)
             loss += heat
             worst = max(worst, gap)
             leaked += work.conductors[c].leaked_a
@@ -98,13 +98,16 @@ def _leak(w, shunt, before_v, after_v):
 
 
 @njit
-def _finish(conductor, w, node_v, length, balance):
+def _finish(conductor, w, node_v, balance):
     heat = gap = 0.0
     left_v, right_v = node_v[conductor.left_node], node_v[conductor.right_node]
     if conductor.ohm_per_m > 0.0:
+        conductance, shunt = w.end_s, w.end_shunt_s
+        if w.nodes == 0:
+            conductance, shunt = conductor.whole_s, conductor.whole_shunt_s
         drop = w.front_v - right_v
-        leaves, enters = _leak(w, w.end_shunt_s, w.front_v, right_v)
-        inflow = drop * w.end_s
+        leaves, enters = _leak(w, shunt, w.front_v, right_v)
+        inflow = drop * conductance
         heat = drop * inflow + leaves * w.front_v + enters * right_v
         w.right_a -= inflow - enters
         if w.open:
@@ -112,9 +115,10 @@ def _finish(conductor, w, node_v, length, balance):
         else:
             w.left_a += inflow + leaves
     else:
-        leaves, _ = _leak(w, conductor.siemens_per_m * length, left_v, 0.0)
-        heat = leaves * left_v
+        leaves, enters = _leak(w, conductor.whole_shunt_s, left_v, right_v)
+        heat = leaves * left_v + enters * right_v
         w.left_a += leaves
+        w.right_a += enters
     balance[conductor.left_node] += w.left_a
     balance[conductor.right_node] += w.right_a
     return heat, gap

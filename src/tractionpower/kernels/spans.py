@@ -20,12 +20,10 @@ def place_ports(network, work):
     """Sort the ports of the spans by place and compute all that depends on their places only."""
     ports, conductor_work = network.ports, work.conductors
     _sort_ports(ports, work.order, work.in_service[0])
-    for s in range(network.spans.shape[0]):
-        work.spans[s].ports = 0
-        work.spans[s].stale = True
-    for c in range(conductor_work.shape[0]):
-        conductor_work[c].last_m = 0.0
-        conductor_work[c].nodes = 0
+    _clear_spans(network, work)
+    base = work.step_base
+    for k in range(base.shape[0]):
+        base[k] = network.base[k]
     for k in range(work.in_service[0]):
         p = work.order[k]
         port = ports[p]
@@ -39,7 +37,32 @@ def place_ports(network, work):
             c = port.positive if m == 0 else port.negative
             work.sides[p, m].conductor = c
             _attach(network.conductors[c], conductor_work[c], work.sides[p, m], port.x_m, length)
+            if work.sides[p, m].insertion == FIRST:
+                _withdraw(network.conductors[c], base)
     _finish_conductors(network, work)
+
+
+@inlined
+def _clear_spans(network, work):
+    for s in range(network.spans.shape[0]):
+        if work.spans[s].ports > 0:
+            span = network.spans[s]
+            work.spans[s].ports = 0
+            for c in range(span.first_conductor, span.first_conductor + span.conductors):
+                work.conductors[c].last_m = 0.0
+                work.conductors[c].nodes = 0
+
+
+@inlined
+def _withdraw(conductor, base):
+    """Take a conductor that ports stand on out of the skeleton: its span brings it in."""
+    left, right = conductor.left_node, conductor.right_node
+    base[left] -= conductor.whole_shunt_s
+    base[right] -= conductor.whole_shunt_s
+    if left != right:
+        base[left] -= conductor.whole_s
+        base[right] -= conductor.whole_s
+        base[conductor.coupling] += conductor.whole_s
 
 
 @njit
@@ -90,28 +113,22 @@ def pi_element(conductor, length):
 
 @njit
 def _finish_conductors(network, work):
-    """Set the last conductance of every conductor; those without ports go into the base of this step."""
-    base = work.step_base
-    for k in range(base.shape[0]):
-        base[k] = network.base[k]
-    row = 0
-    for s in range(network.spans.shape[0]):
-        span = network.spans[s]
-        work.spans[s].first_row = row
-        row += 2 * work.spans[s].ports + span.conductors
+    """Set the last element of every conductor that ports stand on, and where the rows of each span begin."""
+    row, k = 0, 0
+    while k < work.in_service[0]:
+        s = network.ports[work.order[k]].span
+        if s < 0:
+            k += 1
+            continue
+        span, span_work = network.spans[s], work.spans[s]
+        span_work.stale = True
+        span_work.first_row = row
+        row += 2 * span_work.ports + span.conductors
         for c in range(span.first_conductor, span.first_conductor + span.conductors):
-            conductor, w = network.conductors[c], work.conductors[c]
-            if conductor.ohm_per_m == 0.0:
-                base[conductor.left_node] += conductor.siemens_per_m * span.length_m
-                continue
-            w.end_s, w.end_shunt_s = pi_element(conductor, span.length_m - w.last_m)
-            if w.nodes == 0:
-                base[conductor.left_node] += w.end_shunt_s
-                base[conductor.right_node] += w.end_shunt_s
-                if conductor.left_node != conductor.right_node:
-                    base[conductor.left_node] += w.end_s
-                    base[conductor.right_node] += w.end_s
-                    base[conductor.coupling] -= w.end_s
+            w = work.conductors[c]
+            if w.nodes > 0:
+                w.end_s, w.end_shunt_s = pi_element(network.conductors[c], span.length_m - w.last_m)
+        k += span_work.ports
 
 
 @njit
@@ -130,14 +147,19 @@ def condense(network, work):
     if not _sweep(network, work):
         _clear(work.front.reshape(work.front.size))  # what the sweep left there when it gave up
         return False
-    for s in range(spans.shape[0]):
-        if work.spans[s].ports > 0:
-            span = spans[s]
-            ends = span.right_terminals + span.left_terminals
-            for i in range(span.first_terminal, span.first_terminal + ends):
-                node_v[terminals[i]] += condensed_b[i]
-            for k in range(span.first_scatter, span.first_scatter + ends * (ends + 1) // 2):
-                value[scatter[k]] += condensed[k]
+    n = 0
+    while n < work.in_service[0]:
+        s = network.ports[work.order[n]].span
+        if s < 0:
+            n += 1
+            continue
+        span = spans[s]
+        ends = span.right_terminals + span.left_terminals
+        for i in range(span.first_terminal, span.first_terminal + ends):
+            node_v[terminals[i]] += condensed_b[i]
+        for k in range(span.first_scatter, span.first_scatter + ends * (ends + 1) // 2):
+            value[scatter[k]] += condensed[k]
+        n += work.spans[s].ports
     return True
 
 
@@ -149,9 +171,15 @@ def _sweep(network, work):
     """
     front, b, rows, order = work.front, work.front_b, work.row, work.order
     conductors, conductor_work = network.conductors, work.conductors
-    for s in range(network.spans.shape[0]):
+    n = 0
+    while n < work.in_service[0]:
+        s = network.ports[order[n]].span
+        if s < 0:
+            n += 1
+            continue
         span, span_work = network.spans[s], work.spans[s]
-        if span_work.ports == 0 or not span_work.stale:
+        n += span_work.ports
+        if not span_work.stale:
             continue
         ends = span.right_terminals + span.left_terminals
         slots = ends + span.fronts
@@ -276,10 +304,14 @@ def expand(network, work):
     """From the potentials of the skeleton compute the voltages of all ports in spans [V]."""
     x, rows, order = work.front_b, work.row, work.order
     conductors, conductor_work, terminals, node_v = network.conductors, work.conductors, network.terminals, work.node_v
-    for s in range(network.spans.shape[0]):
-        span, span_work = network.spans[s], work.spans[s]
-        if span_work.ports == 0:
+    n = 0
+    while n < work.in_service[0]:
+        s = network.ports[order[n]].span
+        if s < 0:
+            n += 1
             continue
+        span, span_work = network.spans[s], work.spans[s]
+        n += span_work.ports
         ends = span.right_terminals + span.left_terminals
         slots = ends + span.fronts
         for i in range(ends):

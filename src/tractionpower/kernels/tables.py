@@ -35,6 +35,8 @@ CONDUCTOR = np.dtype(
     [
         ("ohm_per_m", "f8"),  # zero: both ends are one node
         ("siemens_per_m", "f8"),  # leakage to earth, which is ground then
+        ("whole_s", "f8"),  # pi-element of the whole conductor: from end to end, and to earth at either end
+        ("whole_shunt_s", "f8"),
         ("left_node", "i8"),
         ("right_node", "i8"),
         ("coupling", "i8"),  # place of the pair of its ends in the skeleton's values
@@ -154,8 +156,8 @@ class Network(NamedTuple):
         Structure of the skeleton's factor: rows below the diagonal by column, and where each product of two entries
         of a column goes.
     base
-        Values of the skeleton that do not depend on ports [S]: the diagonal, a dummy for ground, the entries below the
-        diagonal by column; shape (n + 1 + m,).
+        Values of the skeleton without ports [S]: the diagonal, a dummy for ground, the entries below the diagonal by
+        column; shape (n + 1 + m,).
     """
 
     spans: NDArray[np.void]
@@ -184,7 +186,7 @@ class Work(NamedTuple):
     spans: NDArray[np.void]
     order: NDArray[np.int64]  # ports by span and place, those between skeleton nodes first; those not in service last
     in_service: NDArray[np.int64]  # how many of `order` are in service, shape (1,)
-    step_base: NDArray[np.float64]  # skeleton values with the spans that carry no port
+    step_base: NDArray[np.float64]  # skeleton values without the conductors that ports stand on
     value: NDArray[np.float64]
     node_v: NDArray[np.float64]  # potentials of the skeleton nodes, ground last
     front: NDArray[np.float64]  # frontal matrix of the span sweep, one dummy row for ground

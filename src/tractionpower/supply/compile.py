@@ -172,7 +172,8 @@ class _Compiler:
         ports, segments = _with_trains(*self._port_tables(), train_segments)
         network = Network(
             spans.spans, spans.conductors, ports, segments, spans.terminals, spans.scatter,
-            self.structure.column_start, self.structure.row, self.structure.target, self._base(),
+            self.structure.column_start, self.structure.row, self.structure.target,
+            self._base(spans.conductors),
         )  # fmt: skip
         feeding = {source.id for source in self.sources}
         port_of = {substation.id: k for k, substation in enumerate(self.substations) if substation.id in feeding}
@@ -229,7 +230,7 @@ class _Compiler:
     def _is_earthed(self, node: int) -> bool:
         return self.find(node) in self.nodes.earthed
 
-    def _base(self) -> NDArray[np.float64]:
+    def _base(self, conductors: NDArray[np.void]) -> NDArray[np.float64]:
         n, place = len(self.structure.order), self.structure.place
         base = np.zeros(n + 1 + len(self.structure.row))
         for i, j, g in self.edge_rows:
@@ -237,6 +238,11 @@ class _Compiler:
                 base[i] += g
                 base[j] += g
                 base[place(i, j)] -= g
+        for name in ("left_node", "right_node"):
+            np.add.at(base, conductors[name], conductors["whole_shunt_s"])
+            own = conductors[conductors["left_node"] != conductors["right_node"]]
+            np.add.at(base, own[name], own["whole_s"])
+        np.subtract.at(base, own["coupling"], own["whole_s"])
         base[list(self.nodes.floating)] += BLOCKED_CONDUCTANCE_S
         return base
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from tractionpower.kernels.tables import CONDUCTOR, NO_SLOT, SPAN
 from tractionpower.supply.ordering import Structure
-from tractionpower.supply.topology import Span
+from tractionpower.supply.topology import Conductor, Span
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +48,9 @@ def span_tables(spans: Sequence[Span], number: Callable[[int], int], structure: 
         for wire, (i, j) in zip(span.conductors, ends, strict=True):
             has_front = wire.ohm_per_m > 0.0
             left_slot, right_slot = slots.get(i, ground_slot), slots.get(j, ground_slot)
-            conductors.append(
-                (wire.ohm_per_m, wire.siemens_per_m, i, j, place(i, j), left_slot, front if has_front else NO_SLOT, right_slot)
-            )
+            whole = _whole_element(wire, span.length_m)
+            slots_of = (left_slot, front if has_front else NO_SLOT, right_slot)
+            conductors.append((wire.ohm_per_m, wire.siemens_per_m, *whole, i, j, place(i, j), *slots_of))
             front += has_front
         sizes = (len(span.conductors), front - len(own), len(terminals), len(right), len(left), len(scatter))
         rows.append((span.length_m, first_conductor[-1], *sizes))
@@ -59,3 +60,14 @@ def span_tables(spans: Sequence[Span], number: Callable[[int], int], structure: 
         np.array(rows, SPAN), np.array(conductors, CONDUCTOR), np.array(terminals, np.int64),
         np.array(scatter, np.int64), tuple(first_conductor),
     )  # fmt: skip
+
+
+def _whole_element(wire: Conductor, length_m: float) -> tuple[float, float]:
+    """Return conductance and shunt at either end [S] of a whole conductor; without resistance its ends are one node."""
+    r, g = wire.ohm_per_m, wire.siemens_per_m
+    if r == 0.0:
+        return 0.0, 0.5 * g * length_m
+    if g == 0.0:
+        return 1.0 / (r * length_m), 0.0
+    z, angle = math.sqrt(r / g), math.sqrt(r * g) * length_m
+    return 1.0 / (z * math.sinh(angle)), math.tanh(0.5 * angle) / z
