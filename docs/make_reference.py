@@ -1,4 +1,5 @@
-"""Write the reference pages: docs/inputs.md from the declarations, docs/results.md also from a run of the template study.
+"""Write the reference pages: docs/inputs.md from the declarations, docs/results.md also from a run of the template study,
+and the table of conductors that ship in docs/conductors.md.
 
 What a run writes and this page does not describe, or the other way round, is an error.
 """
@@ -20,8 +21,10 @@ from pydantic_core import PydanticUndefined
 
 import tractionpower as tp
 from tractionpower.cosimulation import events
+from tractionpower.io.conductor_files import shipped_conductors
 from tractionpower.io.templates import write_template
 from tractionpower.kernels.train_tables import LIMITED_BY, PHASES
+from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import StudyFile
@@ -40,6 +43,7 @@ FILES = {
     "rollingstock/trains/ID.yaml": Train,
     "rollingstock/vehicles/ID.yaml": Vehicle,
     "limits (CSV)": Limit,
+    "conductors (CSV)": Conductor,
 }
 INPUTS = """Units stand in the names. A list may be the name of a CSV file instead, relative to the file that names it; its
 header row names the keys, those of a nested mapping with dots (`start.time`). A column that is a list of rows itself, such as
@@ -49,6 +53,8 @@ Trains and vehicles are looked for by their id in `rollingstock` of the study's 
 what ships. A character of an id that a file name cannot hold is written as `%` and two hexadecimal digits (`a%2Fb.yaml` for
 a/b).
 """
+CONDUCTORS = ("<!-- conductors that ship: made by `make docs`; do not edit -->\n", "<!-- end of the conductors that ship -->\n")
+KINDS = {"contact_line": "Contact lines", "wire": "Wires", "cable": "Cables", "rail": "Rails (both rails of one track)"}
 NOTE = "<!-- made by `make docs` from the declarations; do not edit -->\n"
 SIGNS = """Parquet files in the folder of the run. Currents and powers are positive when taken from the line, and when a
 substation feeds. A row describes the step that begins at `time_s`: place, speed and phase are those of that instant; forces,
@@ -191,6 +197,33 @@ def results_page() -> str:
     return "\n".join([*parts, EXPORT])
 
 
+def conductors_page() -> str:
+    """Return the page of conductors with the table of those that ship."""
+    begin, end = CONDUCTORS
+    before, _, rest = (HERE / "conductors.md").read_text(encoding="utf-8").partition(begin)
+    return before + begin + "\n" + "\n".join(_shipped_conductors()) + "\n" + end + rest.partition(end)[2]
+
+
+def _shipped_conductors() -> Iterator[str]:
+    """Yield a table for each kind of conductor, then their sources, which rows name by number."""
+    rows = shipped_conductors()
+    sources = {source: number for number, source in enumerate(dict.fromkeys(row.source for row in rows), 1)}
+    for kind, title in KINDS.items():
+        last = "wires" if kind == "contact_line" else "area [mm²] | coefficient [1/K]"
+        yield f"### {title}\n\n| name | resistance at 20 °C [Ω/km] | {last} | status | source |"
+        yield "|---" * (last.count("|") + 5) + "|"
+        for row in rows:
+            if row.kind == kind:
+                ohm = "by its wires" if row.resistance_ohm_per_km is None else f"{row.resistance_ohm_per_km:g}"
+                area = "" if row.area_mm2 is None else f"{row.area_mm2:g}"
+                more = row.wires if kind == "contact_line" else f"{area} | {row.per_kelvin:g}"
+                yield f"| `{row.name}` | {ohm} | {more} | {row.status} | {sources[row.source]} |"
+        yield ""
+    yield "### Sources\n"
+    yield from (f"{number}. {source}" for source, number in sources.items())
+    yield ""
+
+
 def run_template() -> tp.Results:
     """Return a run of the study that `tractionpower new` writes, long enough for all windows."""
     with tempfile.TemporaryDirectory() as folder:
@@ -304,9 +337,10 @@ def _which(model: type[BaseModel]) -> str:
 
 
 def main() -> None:
-    """Write both pages."""
+    """Write all pages."""
     (HERE / "inputs.md").write_text(inputs_page(), encoding="utf-8")
     (HERE / "results.md").write_text(results_page(), encoding="utf-8")
+    (HERE / "conductors.md").write_text(conductors_page(), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -6,6 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from tractionpower.io.conductor_files import CONDUCTORS
+from tractionpower.io.documents import read_document
+from tractionpower.io.text_files import Source
+from tractionpower.model.supply import Supply
+from tractionpower.supply.conductor_checks import check_conductors
+
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *ROOT.glob("*/README.md"), *ROOT.glob("lines/*/README.md")])
 
@@ -18,7 +24,7 @@ def reference():
     return module
 
 
-@pytest.mark.parametrize("page", ["inputs", "results"])
+@pytest.mark.parametrize("page", ["inputs", "results", "conductors"])
 def test_the_reference_pages_are_up_to_date(page, reference):
     made = getattr(reference, f"{page}_page")()
     assert (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8") == made, "run `make docs`"
@@ -33,3 +39,15 @@ def test_what_is_not_described_is_an_error(reference):
 def test_links_lead_somewhere(page):
     for target in re.findall(r"\]\(([^)#\s]+)\)", page.read_text(encoding="utf-8")):
         assert "://" in target or (page.parent / target).exists(), target
+
+
+def test_the_examples_of_the_page_of_conductors_are_sound(tmp_path):
+    page = (ROOT / "docs" / "conductors.md").read_text(encoding="utf-8")
+    blocks = dict(re.findall(r"```(yaml|csv)\n(.*?)```", page, re.DOTALL))
+    (tmp_path / "supply.yaml").write_text(f"format: 1\n{blocks['yaml']}", encoding="utf-8")
+    (tmp_path / "own.csv").write_text(blocks["csv"], encoding="utf-8")
+    rows, _ = CONDUCTORS.read(Source(tmp_path / "own.csv", "own.csv", "conductors"))
+    assert len(rows) == 2
+    supply = read_document(tmp_path / "supply.yaml", Supply)
+    assert len(supply.contact_lines) == 4
+    assert check_conductors(supply, CONDUCTORS.over_shipped(rows)) == []

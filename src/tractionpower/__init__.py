@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from tractionpower.cosimulation.check import check_scenario as check
     from tractionpower.cosimulation.simulate import simulate
     from tractionpower.errors import InputError, OutputError, Problem, TractionPowerError, UsageError
+    from tractionpower.io.conductor_files import change
     from tractionpower.io.scenario_files import load
     from tractionpower.io.scenario_files import save_scenario as save
-    from tractionpower.model.change import apply_changes as change
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.results import Results
     from tractionpower.studies.journeys import journeys
@@ -27,7 +27,7 @@ _HOMES = {
     "Scenario": ("model.scenario", "Scenario"),
     "TractionPowerError": ("errors", "TractionPowerError"),
     "UsageError": ("errors", "UsageError"),
-    "change": ("model.change", "apply_changes"),
+    "change": ("io.conductor_files", "change"),
     "check": ("cosimulation.check", "check_scenario"),
     "journeys": ("studies.journeys", "journeys"),
     "load": ("io.scenario_files", "load"),

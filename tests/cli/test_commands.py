@@ -6,6 +6,8 @@ from tractionpower.cli import main
 from tractionpower.cli.messages import exit_code_of, has_errors, summary
 from tractionpower.errors import InputError, Problem
 
+SCHEMAS = ["study", "line", "supply", "timetable", "train", "vehicle", "limits", "conductors"]
+
 
 @pytest.fixture
 def study(tmp_path, capsys):
@@ -56,7 +58,7 @@ def test_names_of_users_are_neither_markup_nor_terminal_codes(study, capsys):
     assert "\x1b" not in told
 
 
-@pytest.mark.parametrize("name", ["study", "line", "supply", "timetable", "train", "vehicle", "limits"])
+@pytest.mark.parametrize("name", SCHEMAS)
 def test_schema_prints_json(name, capsys):
     assert main(["schema", name, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["type"] == "object"
@@ -64,7 +66,7 @@ def test_schema_prints_json(name, capsys):
 
 def test_schema_without_a_name_prints_all(capsys):
     assert main(["schema"]) == 0
-    assert list(json.loads(capsys.readouterr().out)) == ["study", "line", "supply", "timetable", "train", "vehicle", "limits"]
+    assert list(json.loads(capsys.readouterr().out)) == SCHEMAS
 
 
 def test_new_refuses_a_folder_in_use(study, capsys):

@@ -14,6 +14,11 @@ def test_a_sound_scenario_has_none():
     assert problems_of(load("x")) == {}
 
 
+def test_an_unknown_conductor_is_found():
+    wires = [{"from_km": 0.0, "to_km": 20.0, "type": "C120-2D"}]
+    assert problems_of(load("x"), contact_lines=wires)["supply.contact_lines[0].type"].code == "unknown_conductor"
+
+
 def test_problems_of_line_supply_clock_and_output_come_together():
     scenario = make_scenario(
         load("x", 50.0),

@@ -5,8 +5,10 @@ import itertools
 import numpy as np
 import pytest
 from coupled import couple, run
+from small_studies import make_scenario
 
 from tractionpower.cosimulation.tables import compile_scenario, coupling_voltage, lay_ways
+from tractionpower.io.conductor_files import change
 
 SWITCH = {"connections": [{"from": {"track": "1", "km": 8.0}, "to": {"track": "2", "km": 8.0}}]}
 TWO_LEGS = [{"track": "1", "from_km": 3.0, "to_km": 8.0}, {"track": "2", "from_km": 8.0, "to_km": 14.0}]
@@ -98,3 +100,11 @@ def test_sources_and_loads_keep_their_order_and_times():
     assert block.sources["no_load_v"][1] == pytest.approx(3468.0)
     np.testing.assert_allclose(block.loads["from_s"], [-np.inf, 60.0], atol=1e-6)
     np.testing.assert_allclose(block.loads["to_s"], [np.inf, 90.0], atol=1e-6)
+
+
+def test_types_of_conductors_reach_the_network_as_resistances():
+    line, rails = "supply.contact_lines[0]", "supply.return_circuit[0]"
+    none = [f"{line}.resistance_ohm_per_km=null", f"{rails}.resistance_ohm_per_km=null"]
+    changed = change(make_scenario(), [*none, f"{line}.type=C120-2C", f"{rails}.rail='60E1'", f"{rails}.wear_percent=10"])
+    ohm_per_m = compile_scenario(changed).supply.network.conductors["ohm_per_m"]
+    assert set(ohm_per_m[ohm_per_m > 0.0]) == {0.0613 / 1000.0, 0.011 / 0.9 / 2 / 1000.0}

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tractionpower.errors import InputError, OutputError
+from tractionpower.io.conductor_files import change, shipped_conductors
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.io.scenario_files import load_scenario, read_scenario, save_scenario
 from tractionpower.io.templates import template_texts
@@ -143,6 +144,69 @@ def test_only_changed_limits_are_saved(write_study, tmp_path):
     save_scenario(scenario, tmp_path / "saved")
     assert (tmp_path / "saved" / "limits.csv").read_text().count("\n") == 2
     assert load_scenario(tmp_path / "saved").scenario == scenario
+
+
+CONDUCTORS = "format: 1\nconductors: c.csv\nclock: {start: 00:00, end: 01:00}\n"
+HEADER = "kind,name,resistance_ohm_per_km,wires\n"
+SUPPLY = (
+    "format: 1\ncontact_lines:\n  - {from_km: 0.0, to_km: 20.0, type: C120-2C}\n"
+    "return_circuit:\n  - {from_km: 0.0, to_km: 20.0, rail: mine}\n"
+)
+
+
+def test_conductors_are_laid_over_the_shipped_ones_and_only_those_in_use_are_kept(write_study, tmp_path):
+    rows = "rail,mine,0.012,\nwire,L120,0.16,\nwire,Cu150,0.13,\n"
+    loaded = load_scenario(write_study(study_yaml=CONDUCTORS, supply_yaml=SUPPLY, c_csv=HEADER + rows))
+    kept = {(row.kind, row.name): row for row in loaded.scenario.conductors}
+    assert list(kept) == [("contact_line", "C120-2C"), ("rail", "mine"), ("wire", "Cu100"), ("wire", "L120")]
+    assert (kept["wire", "L120"].resistance_ohm_per_km, kept["wire", "L120"].status) == (0.16, "user")
+    assert len(loaded.conductors) == len(shipped_conductors()) + 1
+    save_scenario(loaded.scenario, tmp_path / "saved")
+    assert (tmp_path / "saved" / "conductors.csv").read_text().count("\n") == 3  # the rail and the wire that differs
+    assert load_scenario(tmp_path / "saved").scenario == loaded.scenario
+
+
+def test_conductors_that_nobody_uses_change_no_hash(write_study):
+    plain = load_scenario(write_study()).scenario
+    assert plain.conductors == ()
+    with_rows = load_scenario(write_study(study_yaml=CONDUCTORS + "name: Test\n", c_csv=HEADER + "rail,mine,0.012,\n")).scenario
+    again = with_rows.model_copy(update={"clock": plain.clock})
+    assert again.input_hash == plain.input_hash
+
+
+def test_changes_may_name_any_conductor_of_the_table(write_study):
+    loaded = load_scenario(write_study(study_yaml=CONDUCTORS, c_csv=HEADER + "contact_line,mine,0.07,\n"))
+    clear = "supply.contact_lines[0].resistance_ohm_per_km=null"
+    changed = loaded.changed([clear, "supply.contact_lines[0].type=mine"])
+    assert [row.resistance_ohm_per_km for row in changed.conductors] == [0.07]
+    shipped = change(changed, ["supply.contact_lines[0].type=CA-220"])
+    assert [row.name for row in shipped.conductors] == ["CA-220", "CuAg150", "L185"]
+
+
+def test_a_changed_row_of_a_conductor_wins_over_the_table(write_study):
+    loaded = load_scenario(write_study(supply_yaml=SUPPLY.replace("mine", "60E1")))  # a rail, though YAML reads 600
+    assert [row.name for row in loaded.scenario.conductors][1] == "60E1"
+    changed = loaded.changed(["conductors[1].resistance_ohm_per_km=0.02"])
+    assert next(row for row in changed.conductors if row.name == "60E1").resistance_ohm_per_km == 0.02
+
+
+@pytest.mark.parametrize(
+    ("row", "code", "path", "found"),
+    [
+        ("rail,mine,=A1,", "wrong_type", "conductors[rail mine].resistance_ohm_per_km", "'=A1' in column resistance_ohm_per_km"),
+        ("rial,mine,0.1,", "bad_choice", "conductors[rial mine].kind", "'rial' in column kind"),
+        ("wire,L120,0.2,", "duplicate_row", "conductors", "the conductor wire L120 2 times"),
+    ],
+)
+def test_problems_of_conductors(only_problem, row, code, path, found):
+    problem = only_problem(study_yaml=CONDUCTORS, c_csv=f"{HEADER}wire,L120,0.1,\n{row}\n")
+    assert (problem.code, problem.path, problem.place, problem.found) == (code, path, "c.csv:3", found)
+
+
+@pytest.mark.parametrize("row", ["contact_line,mine,,L120", "wire,mine,,", "rail,mine,0.1,contact 1 Cu100"])
+def test_a_row_that_makes_no_conductor_is_told_with_its_line(only_problem, row):
+    problem = only_problem(study_yaml=CONDUCTORS, c_csv=f"{HEADER}{row}\n")
+    assert (problem.path.split("[")[0], problem.place) == ("conductors", "c.csv:2")
 
 
 def test_saving_where_nothing_can_be_written(write_study, tmp_path):

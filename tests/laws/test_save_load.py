@@ -6,8 +6,10 @@ from pathlib import Path
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tractionpower.io.conductor_files import shipped_conductors
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.io.scenario_files import load_scenario, save_scenario
+from tractionpower.model.conductors import Conductor, overlay_conductors
 from tractionpower.model.drive import (
     CurrentPoint,
     EfficiencyPoint,
@@ -24,7 +26,8 @@ from tractionpower.model.drive import (
 from tractionpower.model.limits import Limit, overlay
 from tractionpower.model.line import Connection, Curve, Gradient, Line, SpeedLimit, Station, Track, TrackPoint
 from tractionpower.model.scenario import Clock, Output, Scenario
-from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, SectionPoint, Substation, Supply
+from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, SectionPoint, Substation, Supply, Wire
+from tractionpower.model.switchgear import Feeder
 from tractionpower.model.timetable import Call, Leg, Start, Timetable, TrainRun
 from tractionpower.model.vehicle import Adhesion, Auxiliaries, Brake, Part, Resistance, Train, Vehicle
 from tractionpower.results.results import Results
@@ -122,6 +125,22 @@ def loads(draw: st.DrawFn) -> Load:
     )
 
 
+WIRES = st.builds(
+    Wire,
+    conductor=st.sampled_from(["Cu100", "own"]),
+    count=st.integers(1, 3),
+    use=st.sampled_from(["contact", "messenger", "feeder"]),
+    wear_percent=st.none() | reals(0, 60),
+)
+CONTACT_LINES = st.one_of(
+    stretch(ContactLine, resistance_ohm_per_km=positive(10), tracks=TRACKS),
+    stretch(ContactLine, type=st.sampled_from(["C120-2C", "CA-220", "own", "unknown"]), wear_percent=st.none() | reals(0, 60)),
+    stretch(ContactLine, wires=st.lists(WIRES, min_size=1, max_size=3).map(tuple), temperature_c=st.none() | reals(-50, 200)),
+)
+RETURNS = stretch(ReturnCircuit, resistance_ohm_per_km=reals(0, 10), tracks=TRACKS) | stretch(
+    ReturnCircuit, rail=st.sampled_from(["60E1", "own"]), wear_percent=reals(0, 60)
+)
+
 SUPPLIES = st.builds(
     Supply,
     system=NAMES,
@@ -130,12 +149,19 @@ SUPPLIES = st.builds(
         st.builds(SectionCabin, id=NAMES, km=reals(), state=st.sampled_from(["closed", "bypassed", "open"]), tracks=TRACKS)
     ),
     section_points=listed(st.builds(SectionPoint, id=NAMES, track=NAMES, km=reals(), state=st.sampled_from(["open", "closed"]))),
-    contact_lines=st.lists(stretch(ContactLine, resistance_ohm_per_km=positive(10), tracks=TRACKS), min_size=1, max_size=3).map(
-        tuple
+    contact_lines=st.lists(CONTACT_LINES, min_size=1, max_size=3).map(tuple),
+    return_circuit=st.lists(RETURNS, min_size=1, max_size=3).map(tuple),
+    feeders=listed(
+        st.builds(
+            Feeder,
+            at=NAMES,
+            track=NAMES,
+            side=st.sampled_from(["low_km", "high_km", "return"]),
+            cable=st.sampled_from(["YAKY-500", "own"]),
+            cables=st.integers(1, 9),
+            length_m=positive(1e4),
+        )
     ),
-    return_circuit=st.lists(
-        stretch(ReturnCircuit, resistance_ohm_per_km=reals(0, 10), tracks=TRACKS), min_size=1, max_size=3
-    ).map(tuple),
     loads=listed(loads()),
 )
 
@@ -151,6 +177,27 @@ LIMITS = listed(
         status=st.sampled_from(["verified", "secondary", "recalled", "user"]),
     )
 ).map(lambda rows: overlay(shipped_limits(), rows))
+
+CONDUCTORS = listed(
+    st.builds(
+        Conductor,
+        kind=st.sampled_from(["wire", "cable", "rail"]),
+        name=st.sampled_from(["own", "Cu100", "YAKY-500", "60E1"]),
+        resistance_ohm_per_km=positive(10),
+        area_mm2=st.none() | positive(1e4),
+        per_kelvin=reals(0, 0.02),
+        source=CELLS,
+        status=st.sampled_from(["verified", "secondary", "recalled", "user"]),
+    )
+    | st.builds(
+        Conductor,
+        kind=st.just("contact_line"),
+        name=st.sampled_from(["own", "C120-2C"]),
+        resistance_ohm_per_km=st.none() | positive(10),
+        wires=st.sampled_from(["contact 1 own", "messenger 2 L150 + contact 2 Cu100 + feeder 1 own"]),
+        source=CELLS,
+    )
+).map(lambda rows: overlay_conductors(shipped_conductors(), rows))
 
 # --- trains: any text may be an identifier, so capitals, slashes, dots and names of devices are drawn often
 
@@ -349,6 +396,8 @@ SCENARIOS = st.builds(
     coupling_voltage_v=st.none() | positive(5000),
     seed=st.integers(0, 2**40),
     limits=LIMITS,
+    conductors=CONDUCTORS,
+    coast_without_voltage_s=reals(0, 900),
     output=st.builds(Output, every_s=st.none() | positive(1e3), tables=st.none() | listed(TEXTS)),
 )
 

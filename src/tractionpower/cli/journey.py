@@ -70,13 +70,12 @@ def journey(  # noqa: PLR0917 - typer makes options of them
     from tractionpower.cli.console import new_console, warn_of_compilation
     from tractionpower.cli.messages import DONE, NOT_COMPLETED, tell, tell_beside
     from tractionpower.io.scenario_files import load_scenario
-    from tractionpower.model.change import apply_changes
     from tractionpower.studies.journeys import choose_runs, why_not_complete
 
     _check_number("--voltage", voltage, "V", 1.0, 100_000.0)
     _check_number("--step", step, "s", 0.02, 5.0)
     loaded = load_scenario(study)
-    scenario = apply_changes(loaded.scenario, changes or [])
+    scenario = loaded.changed(changes or [])
     runs = choose_runs(scenario, train)
     folder = out if out is not None else Path("reports") / loaded.folder.name / "journey"
     tell(f"{scenario.name or loaded.folder.name}: {loaded.origin}")

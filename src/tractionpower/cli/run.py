@@ -34,11 +34,10 @@ def run(
     from tractionpower.cli.report import tell_reports
     from tractionpower.cli.run_summary import show
     from tractionpower.io.scenario_files import load_scenario
-    from tractionpower.model.change import apply_changes
     from tractionpower.reporting.reports import WORKBOOK
 
     loaded = load_scenario(study)
-    scenario = apply_changes(loaded.scenario, changes or [])
+    scenario = loaded.changed(changes or [])
     folder = out if out is not None else Path("reports") / loaded.folder.name
     tell(f"{scenario.name or loaded.folder.name}: {loaded.origin}")
     warn_of_compilation("advance")

@@ -11,6 +11,7 @@ from tractionpower.model.scenario import Clock, Scenario
 from tractionpower.movement.checks import check_movement
 from tractionpower.results.columns import TABLES
 from tractionpower.supply.checks import check_supply
+from tractionpower.supply.conductor_checks import check_conductors
 
 
 def check_scenario(scenario: Scenario) -> list[Problem]:
@@ -18,6 +19,7 @@ def check_scenario(scenario: Scenario) -> list[Problem]:
     return [
         *check_line(scenario.line),
         *check_supply(scenario.supply, scenario.line, scenario.limits),
+        *check_conductors(scenario.supply, scenario.conductors),
         *check_movement(scenario),
         *_check_clock(scenario),
         *_check_output(scenario),

@@ -103,6 +103,8 @@ class Reader:
                 silent |= self._table(data, key, child, mark, (*loc, key), content)
             elif child.kind == "time" and isinstance(value, float):
                 data[key] = str(value)  # 7.30 is no time; as a number it would pass for seconds
+            elif child.kind == "identifier" and isinstance(value, float) and "e" in mark.find((key,)).written.lower():
+                data[key] = mark.find((key,)).written  # the rail 60E1 is no number
             else:
                 silent |= self._expand(value, child, mark.find((key,)), (*loc, key), content)
         return silent

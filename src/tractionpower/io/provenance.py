@@ -1,10 +1,10 @@
 """Where a value came from: a tree from model paths to file and line, kept outside the models.
 
 Grammar of a model path: names are joined by dots; the items of a list stand in square brackets, a thing that has an
-``id`` by its id (``supply.substations[A].km``), a row of the limits by system and name (``limits[dc3000 u_max2]``), any
-other item by its index from 0 (``line.gradients[7].to_km``), and so are items that share an id. Free keys of a mapping
-stand in brackets too. An index is understood for things with an id as well, but an id wins: ``line.tracks[1]`` is the
-track whose id is 1.
+``id`` by its id (``supply.substations[A].km``), a row of the limits by system and name (``limits[dc3000 u_max2]``), one of
+the conductors by kind and name (``conductors[rail 60E1]``), any other item by its index from 0
+(``line.gradients[7].to_km``), and so are items that share an id. Free keys of a mapping stand in brackets too. An index is
+understood for things with an id as well, but an id wins: ``line.tracks[1]`` is the track whose id is 1.
 """
 
 from __future__ import annotations
@@ -36,6 +36,8 @@ class Mark:
         Index of the children of a list by their identifier.
     is_row
         Whether this is a row of a CSV file: its cells share its line and are told by their column.
+    written
+        How a number stands in the file; empty for anything else.
     """
 
     file: str
@@ -43,6 +45,7 @@ class Mark:
     children: dict[str | int, Mark] = field(default_factory=dict)
     ids: dict[str, int] = field(default_factory=dict)
     is_row: bool = False
+    written: str = ""
 
     @property
     def place(self) -> str:
@@ -79,6 +82,8 @@ def item_name(item: Any) -> str | None:
         return None
     if {"system", "name", "value"} <= item.keys():
         return f"{item['system']} {item['name']}"
+    if {"kind", "name"} <= item.keys() and "id" not in item:
+        return f"{item['kind']} {item['name']}"
     name = item.get("id")
     if isinstance(name, bool) or not isinstance(name, str | int):
         return None

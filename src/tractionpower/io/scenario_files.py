@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
@@ -9,10 +10,12 @@ from typing import Any, TypeVar
 from pydantic import BaseModel
 
 from tractionpower.errors import InputError, Problem
+from tractionpower.io.conductor_files import CONDUCTORS, shipped_conductors
 from tractionpower.io.documents import Reader
 from tractionpower.io.file_names import file_names
 from tractionpower.io.finder import STUDY_FILE, Study, find_study
-from tractionpower.io.limits_files import limits_text, read_limits, shipped_limits
+from tractionpower.io.limits_files import LIMITS
+from tractionpower.io.overlaid_tables import OverlaidTable, Row
 from tractionpower.io.problems import in_file_order
 from tractionpower.io.provenance import Mark, Provenance
 from tractionpower.io.rolling_stock import RollingStock
@@ -20,7 +23,8 @@ from tractionpower.io.stock_finder import FOLDER
 from tractionpower.io.text_files import Source, relative_label, write_files
 from tractionpower.io.yaml_text import document
 from tractionpower.model.base import FORMAT
-from tractionpower.model.limits import Limit, overlay
+from tractionpower.model.change import apply_changes
+from tractionpower.model.conductors import Conductor
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import Scenario, StudyFile
 from tractionpower.model.supply import Supply
@@ -29,7 +33,7 @@ from tractionpower.model.vehicle import Train, Vehicle
 
 Model = TypeVar("Model", bound=BaseModel)
 
-_OF_THE_STUDY = ("name", "clock", "coupling", "coupling_voltage_v", "seed", "output")
+_OF_THE_STUDY = ("name", "clock", "coupling", "coupling_voltage_v", "seed", "coast_without_voltage_s", "output")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +52,8 @@ class LoadedScenario:
         Warnings of the reading.
     origin
         Where the study was found, in words.
+    conductors
+        The whole table of conductors; the scenario holds the rows that it uses.
     """
 
     scenario: Scenario
@@ -55,6 +61,17 @@ class LoadedScenario:
     folder: Path
     problems: tuple[Problem, ...] = ()
     origin: str = ""
+    conductors: tuple[Conductor, ...] = field(default_factory=shipped_conductors)
+
+    def changed(self, changes: Iterable[str]) -> Scenario:
+        """Return the scenario with changes by path applied; they may name any conductor of the whole table.
+
+        Raises
+        ------
+        InputError
+            With all that is wrong with them.
+        """
+        return apply_changes(self.scenario, changes, self.conductors)
 
 
 def load_scenario(study: str | Path) -> LoadedScenario:
@@ -92,13 +109,15 @@ def read_scenario(study: str | Path) -> tuple[LoadedScenario | None, list[Proble
     problems = in_file_order(files.reader.problems)
     if scenario is None:
         return None, problems
-    return LoadedScenario(scenario, Provenance(files.root), found.folder, tuple(problems), found.origin), problems
+    told = tuple(problems)
+    loaded = LoadedScenario(scenario, Provenance(files.root), found.folder, told, found.origin, files.conductors)
+    return loaded, problems
 
 
 def save_scenario(scenario: Scenario, folder: str | Path) -> None:
     """Write a scenario as a study; loading it gives an equal scenario with the same `input_hash`.
 
-    Keys that have their default are left out; of the limits only rows that differ from the shipped ones are written.
+    Keys that have their default are left out; of limits and conductors only rows that differ from the shipped ones are written.
     Trains and vehicles go into ``rollingstock`` beside the study.
 
     Raises
@@ -112,10 +131,10 @@ def save_scenario(scenario: Scenario, folder: str | Path) -> None:
         study["timetable"] = "timetable.yaml"
         texts["timetable.yaml"] = document(_dump(scenario.timetable))
     texts |= _stock_texts("vehicles", scenario.vehicles) | _stock_texts("trains", scenario.trains)
-    limits = limits_text(scenario.limits)
-    if limits:
-        study["limits"] = "limits.csv"
-        texts["limits.csv"] = limits
+    for name, rows in (("limits", LIMITS.text(scenario.limits)), ("conductors", CONDUCTORS.text(scenario.conductors))):
+        if rows:
+            study[name] = f"{name}.csv"
+            texts[f"{name}.csv"] = rows
     own = scenario.model_dump(mode="json", by_alias=True, include=set(_OF_THE_STUDY), exclude_defaults=True)
     # The study file comes last: a folder is a study once everything that it names is there.
     texts[STUDY_FILE] = document({**study, **own})
@@ -138,6 +157,7 @@ class _StudyReader:
     reader: Reader = field(init=False)
     stock: RollingStock = field(init=False)
     root: Mark = field(init=False)
+    conductors: tuple[Conductor, ...] = ()
 
     def __post_init__(self) -> None:
         self.reader = Reader(self.found.folder)
@@ -152,14 +172,13 @@ class _StudyReader:
         supply = self._part("supply", names, Supply)
         timetable = self._part("timetable", names, Timetable) if names.get("timetable") is not None else Timetable()
         self.root.children |= {"trains": self.stock.trains.mark(), "vehicles": self.stock.vehicles.mark()}
-        limits = self._limits(names)
-        if study is None or line is None or supply is None or timetable is None or limits is None:
-            return None
-        if self.reader.has_errors:
+        limits, self.conductors = self._overlaid(LIMITS, names), self._overlaid(CONDUCTORS, names)
+        if study is None or line is None or supply is None or timetable is None or self.reader.has_errors:
             return None
         own = {name: getattr(study, name) for name in _OF_THE_STUDY}
         trains, vehicles = self.stock.trains.sorted(), self.stock.vehicles.sorted()
-        return Scenario(line=line, supply=supply, timetable=timetable, trains=trains, vehicles=vehicles, limits=limits, **own)
+        tables = {"limits": limits, "conductors": self.conductors}
+        return Scenario(line=line, supply=supply, timetable=timetable, trains=trains, vehicles=vehicles, **tables, **own)
 
     def _study(self, source: Source) -> tuple[dict[str, Any], StudyFile | None]:
         # Also of a broken study file the parts are read, so that their problems are told in the same breath.
@@ -183,18 +202,17 @@ class _StudyReader:
             self.stock.add_timetable(content)
         return part
 
-    def _limits(self, names: dict[str, Any]) -> tuple[Limit, ...] | None:
-        if names.get("limits") is None:
-            return shipped_limits()
-        source = self._source("limits", names)
+    def _overlaid(self, table: OverlaidTable[Row], names: dict[str, Any]) -> tuple[Row, ...]:
+        # Of a broken file no rows; its problems stop the reading later.
+        source = self._source(table.name, names) if names.get(table.name) is not None else None
         if source is None:
-            return None
+            return table.shipped
         try:
-            rows, self.root.children["limits"] = read_limits(source)
+            rows, self.root.children[table.name] = table.read(source)
         except InputError as error:
             self.reader.problems += error.problems
-            return None
-        return overlay(shipped_limits(), rows)
+            return ()
+        return table.over_shipped(rows)
 
     def _source(self, key: str, names: dict[str, Any]) -> Source | None:
         name = names.get(key)

@@ -8,6 +8,7 @@ from pydantic import BaseModel
 
 from tractionpower.errors import UsageError
 from tractionpower.io.wording import did_you_mean, shown
+from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import StudyFile
@@ -23,6 +24,7 @@ _MODELS: dict[str, type[BaseModel]] = {
     "train": Train,
     "vehicle": Vehicle,
     "limits": Limit,
+    "conductors": Conductor,
 }
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -35,7 +37,7 @@ def schema_names() -> tuple[str, ...]:
 
 
 def schema(name: str) -> dict[str, Any]:
-    """Return the JSON schema of a kind of input file; that of ``limits`` is one row of the CSV file.
+    """Return the JSON schema of a kind of input file; those of ``limits`` and ``conductors`` are one row of the CSV file.
 
     Raises
     ------

@@ -134,7 +134,9 @@ class _Builder:
             self._notes.append((loc, "unknown_tag", f"the tag {printable(str(node.tag))}", "no tags", _line(node)))
         if isinstance(node, ScalarNode):
             is_text = node.style is not None or node.tag == _TAGS[2]
-            return (node.value if is_text else plain_value(node.value)), mark
+            value = node.value if is_text else plain_value(node.value)
+            mark.written = node.value if isinstance(value, float) else ""
+            return value, mark
         self._open.add(id(node))
         build = self._mapping if isinstance(node, MappingNode) else self._sequence
         data = build(node, loc, mark)

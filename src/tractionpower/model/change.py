@@ -15,6 +15,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from tractionpower.errors import InputError, Problem
+from tractionpower.model.conductors import Conductor
 from tractionpower.model.scenario import Scenario
 
 # An identifier in brackets may hold dots and equals signs, so the first "=" outside brackets ends the path.
@@ -47,11 +48,12 @@ def apply_change(scenario: Scenario, change: str) -> Scenario:
     return apply_changes(scenario, [change])
 
 
-def apply_changes(scenario: Scenario, changes: Iterable[str]) -> Scenario:
+def apply_changes(scenario: Scenario, changes: Iterable[str], conductors: Sequence[Conductor] = ()) -> Scenario:
     """Return `scenario` with all `changes` applied in their order and validated once at the end.
 
     Changes that only hold together, such as taking `power_kw` from a load and giving it `current_a`, go in one call.
-    See `apply_change` for their form.
+    See `apply_change` for their form. A scenario holds the conductors that its supply uses; `conductors` are further ones
+    that changes may name.
 
     Raises
     ------
@@ -67,6 +69,9 @@ def apply_changes(scenario: Scenario, changes: Iterable[str]) -> Scenario:
             problems.extend(error.problems)
     if problems:
         raise InputError(problems)
+    if isinstance(plain["conductors"], list):
+        own = {(row.get("kind"), row.get("name")) for row in plain["conductors"] if isinstance(row, dict)}
+        plain["conductors"] += [row for row in conductors if (row.kind, row.name) not in own]
     try:
         return Scenario.model_validate(plain)
     except ValidationError as error:

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from tractionpower.model.base import Count, Declaration, Format, Real, Text, TimeOfDay
-from tractionpower.model.conductors import Conductor
+from tractionpower.model.conductors import Conductor, used_conductors
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.quantity import field
@@ -78,7 +78,8 @@ class StudyFile(Declaration):
 class Scenario(Declaration):
     """One run, resolved: no file names, all parts in place.
 
-    Equal scenarios have equal `input_hash`, whatever the files were called.
+    Equal scenarios have equal `input_hash`, whatever the files were called. Of the conductors it keeps the rows that its
+    supply uses, so that a row that nobody uses changes no hash.
     """
 
     name: Text = ""
@@ -95,6 +96,11 @@ class Scenario(Declaration):
     conductors: tuple[Conductor, ...] = ()
     coast_without_voltage_s: Real = 120.0
     output: Output = Output()
+
+    @model_validator(mode="after")
+    def _keeps_what_it_uses(self) -> Scenario:
+        self.__dict__["conductors"] = used_conductors(self.supply, self.conductors)
+        return self
 
     @property
     def input_hash(self) -> str:

@@ -20,7 +20,6 @@ from tractionpower.io.documents import read_document
 from tractionpower.io.finder import data_folder
 from tractionpower.io.scenario_files import load_scenario
 from tractionpower.model.base import Declaration, Format, Real, Text
-from tractionpower.model.change import apply_changes
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.store import MemoryWriter
 from tractionpower.studies.journeys import Form
@@ -94,9 +93,9 @@ def run_case(folder: Path) -> Iterator[Finding]:
         If the case or its study has errors.
     """
     case = read_document(folder / CASE_FILE, Case)
-    base = load_scenario(folder).scenario
+    base = load_scenario(folder)
     for check in case.checks:
-        scenario = apply_changes(base, check.set)
+        scenario = base.changed(check.set)
         for form in check.passes:
             yield from _find(folder, case, check, form, scenario)
 

@@ -14,6 +14,7 @@ from tractionpower.model.supply import Supply
 from tractionpower.model.vehicle import Train, Vehicle
 from tractionpower.movement.compile import train_of
 from tractionpower.movement.formation import form
+from tractionpower.reporting.workbook import conductors
 from tractionpower.reporting.workbook.facts import KNOWN_AS
 from tractionpower.reporting.workbook.page import Book, Column, Page, heading_of
 from tractionpower.reporting.workbook.trains import formation_in_words, route_in_words
@@ -32,6 +33,7 @@ def add(book: Book) -> None:
     page.section("Study")
     page.table((Column("what", widest=40), Column("value", "any", widest=70)), _study(scenario))
     _lists(page, scenario.supply, Supply)
+    conductors.add(page, scenario)
     page = book.page("Inputs line", "Inputs as used: line")
     if scenario.line.source:
         page.note(f"Source: {scenario.line.source}")
