@@ -31,16 +31,6 @@ class Rails:
     siemens_per_m: float
 
 
-@dataclass(frozen=True, slots=True)
-class _Row:
-    tracks: tuple[str, ...]
-    from_km: float
-    to_km: float
-    ohm_per_m: float
-    siemens_per_m: float
-    number: int
-
-
 class Bundle:
     """Tracks that share return conductors, and what lies between the cuts.
 
@@ -60,18 +50,14 @@ class Bundle:
         self.tracks = tuple(tracks)
         self.ends = {track.id: (track.from_km, track.to_km) for track in line.tracks if track.id in tracks}
         self._contact_rows = [
-            _Row((track,), row.from_km, row.to_km, contact_line_resistance(row, conductors) / 1000.0, 0.0, number)
-            for number, row in enumerate(supply.contact_lines)
-            for track in self.tracks
-            if row.tracks is None or track in row.tracks
+            (row, track) for row in supply.contact_lines for track in self.tracks if row.tracks is None or track in row.tracks
         ]
-        self._rail_rows = []
-        for number, row in enumerate(supply.return_circuit):
-            members = return_tracks(row, line)
-            own = tuple(track for track in self.tracks if track in members)
-            if own:
-                ohm = return_resistance(row, len(members), conductors) / 1000.0
-                self._rail_rows.append(_Row(own, row.from_km, row.to_km, ohm, row.leakage_s_per_km / 1000.0, number))
+        self._rail_rows = [
+            (number, row, tuple(track for track in self.tracks if track in members))
+            for number, row in enumerate(supply.return_circuit)
+            if (members := return_tracks(row, line)).intersection(self.tracks)
+        ]
+        self._conductors = conductors
         self.cuts: list[float] = []
         self.contacts: list[dict[str, float]] = []
         self.rails: list[list[Rails]] = []
@@ -79,10 +65,11 @@ class Bundle:
     def cut_at(self, kms: Iterable[float]) -> None:
         """Cut the bundle at places of devices, and where conductors begin, end or change."""
         every = [*kms]
-        for row in (*self._contact_rows, *self._rail_rows):
-            low = min(self.ends[track][0] for track in row.tracks)
-            high = max(self.ends[track][1] for track in row.tracks)
-            every += [max(row.from_km, low), min(row.to_km, high)]
+        rows = [(row.from_km, row.to_km, (track,)) for row, track in self._contact_rows]
+        rows += [(row.from_km, row.to_km, tracks) for _, row, tracks in self._rail_rows]
+        for from_km, to_km, tracks in rows:
+            low, high = min(self.ends[track][0] for track in tracks), max(self.ends[track][1] for track in tracks)
+            every += [max(from_km, low), min(to_km, high)]
         for km in sorted(every):
             if not self.cuts or km - self.cuts[-1] >= SHARED_KM:
                 self.cuts.append(km)
@@ -92,17 +79,18 @@ class Bundle:
 
     def _contacts_over(self, km: float) -> dict[str, float]:
         return {
-            row.tracks[0]: row.ohm_per_m
-            for row in self._contact_rows
-            if row.from_km <= km <= row.to_km and self._exists(row.tracks[0], km)
+            track: contact_line_resistance(row, self._conductors) / 1000.0
+            for row, track in self._contact_rows
+            if row.from_km <= km <= row.to_km and self._exists(track, km)
         }
 
     def _rails_over(self, km: float) -> list[Rails]:
         found = []
-        for row in self._rail_rows:
-            tracks = tuple(track for track in row.tracks if self._exists(track, km))
+        for number, row, members in self._rail_rows:
+            tracks = tuple(track for track in members if self._exists(track, km))
             if tracks and row.from_km <= km <= row.to_km:
-                found.append(Rails(row.number, tracks, row.ohm_per_m, row.siemens_per_m))
+                ohm = return_resistance(row, len(tracks), self._conductors) / 1000.0
+                found.append(Rails(number, tracks, ohm, row.leakage_s_per_km / 1000.0))
         return found
 
     def _exists(self, track: str, km: float) -> bool:
