@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.cosimulation.events import EventLog
+from tractionpower.cosimulation.lumping import WorstStep
 from tractionpower.cosimulation.tables import CompiledScenario
 from tractionpower.cosimulation.train_recorder import TrainRecorder
 from tractionpower.kernels.block_tables import Buffers, State, take_rows
@@ -42,6 +43,7 @@ class Recorder:
         supply = compiled.supply
         self.scenario, self.supply, self.writer = scenario, supply, writer
         self.trains = TrainRecorder(scenario, compiled, state)
+        self.worst_step = WorstStep(scenario, self.trains.names, self.trains.places.tracks)
         clock = scenario.clock
         self.step_s = clock.step_s
         self.every = 1 if scenario.output.every_s is None else round(scenario.output.every_s / clock.step_s)
@@ -72,6 +74,7 @@ class Recorder:
         taken = take_rows(buffers, slice(rows))
         self._note(time_s, taken)
         placed = self.trains.add(taken.trains)
+        self.worst_step.add(taken, placed, supply)
         written = number % self.every == 0
         self._write(time_s[written], take_rows(taken, written))
         if "trains" in self.wanted and len(taken.trains):
@@ -191,6 +194,7 @@ class Recorder:
             "verdicts": self._verdicts(),
             "overlaps": self.trains.overlaps.summary(),
             "trains": self.trains.status(self.now_s),
+            "lumping": self.worst_step.compare(),
             "notes": list(self._notes()),
         }
 

@@ -65,6 +65,7 @@ class Bundle:
     def cut_at(self, kms: Iterable[float]) -> None:
         """Cut the bundle at places of devices, and where conductors begin, end or change."""
         every = [*kms]
+        rows: list[tuple[float, float, tuple[str, ...]]]
         rows = [(row.from_km, row.to_km, (track,)) for row, track in self._contact_rows]
         rows += [(row.from_km, row.to_km, tracks) for _, row, tracks in self._rail_rows]
         for from_km, to_km, tracks in rows:

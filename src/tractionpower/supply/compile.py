@@ -73,6 +73,8 @@ class SupplyTables:
 
     Attributes
     ----------
+    supply
+        What was compiled.
     network
         Tables of the solver; the ports are the sources, then the loads, each by identifier, then probes, then trains.
     edges
@@ -107,6 +109,7 @@ class SupplyTables:
     The order of all lists depends on what is declared, not on the states of devices.
     """
 
+    supply: Supply
     network: Network
     edges: NDArray[np.void]
     substations: tuple[Substation, ...]
@@ -181,6 +184,7 @@ class _Compiler:
         links, terms = link_tables(topology, self._edge_numbers(), port_of)
         watched = find_triggers(self.supply, topology.links)
         return SupplyTables(
+            supply=self.supply,
             network=network,
             edges=np.array([row for row in self.edge_rows if row[0] != row[1]], EDGE),
             substations=self.substations,

@@ -1,0 +1,39 @@
+"""The error of lumping the rails into the contact line, against the closed form of one-sided feeding."""
+
+import pytest
+from coupled import couple, run
+from solved import seed_network
+
+from tractionpower.cosimulation.lumping import lump_rails
+from tractionpower.cosimulation.simulate import simulate
+from tractionpower.model.change import apply_changes
+
+
+def test_contact_lines_take_the_resistance_of_their_rails():
+    supply, line = seed_network()
+    lumped = lump_rails(supply, line, ())
+    assert [(row.tracks, row.resistance_ohm_per_km) for row in lumped.contact_lines] == [
+        (("1",), pytest.approx(0.06)), (("2",), pytest.approx(0.06)),
+    ]  # fmt: skip
+    assert [row.resistance_ohm_per_km for row in lumped.return_circuit] == [0.0]
+
+
+def test_the_current_of_the_other_track_is_what_lumping_leaves_out():
+    """Fed from A alone, tracks tied nowhere else: the rails between A and the nearer train carry both currents."""
+    study = couple(run("x"), run("y", track="2", time=60.0), end_s=300.0)
+    study = apply_changes(study, ["supply.substations[B].state=open", "supply.section_cabins[C].state=bypassed"])
+    results = simulate(study)
+    rows = results.table("trains")
+    worst = rows.loc[rows.voltage_v.idxmin()]
+    other = rows[(rows.time_s == worst.time_s) & (rows.train != worst.train)].iloc[0]
+    ohm = study.supply.return_circuit[0].resistance_ohm_per_km
+    told = results.run["lumping"]
+    assert told["train"] == worst.train
+    assert told["voltage_v"] == pytest.approx(worst.voltage_v, abs=0.01)  # tables hold voltages in single precision
+    drop = ohm * other.current_a * min(worst.position_km, other.position_km)
+    assert drop > 1.0
+    assert told["lumped_voltage_v"] - told["voltage_v"] == pytest.approx(drop, rel=1e-3)
+
+
+def test_without_trains_there_is_nothing_to_compare():
+    assert simulate(couple(end_s=10.0)).run["lumping"] == {}
