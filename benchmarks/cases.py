@@ -74,11 +74,57 @@ class Case:
         return {"return_circuit": [own | {"tracks": [t]} for t in "12"], "bonds": [stretch | {"every_km": BOND_KM}]}
 
 
+@dataclass(frozen=True)
+class Tree(Case):
+    """Five double-track branches that meet in one point, with as many devices and trains as a line of their length."""
+
+    branches: int = 5
+
+    @property
+    def tracks(self) -> tuple[str, ...]:
+        return tuple(f"{branch}{side}" for branch in range(self.branches) for side in "ab")
+
+    @property
+    def branch_km(self) -> float:
+        return self.length_km / self.branches
+
+    def line(self) -> Line:
+        first = dict(zip("ab", self.tracks, strict=False))
+        others = self.tracks[2:]
+        joints = [{"from": {"track": t, "km": 0.0}, "to": {"track": first[t[-1]], "km": 0.0}} for t in others]
+        tracks = [{"id": t, "from_km": 0.0, "to_km": self.branch_km} for t in self.tracks]
+        return Line.model_validate({"tracks": tracks, "connections": joints})
+
+    def supply(self, circuit: str, conducts: str = "forward") -> Supply:
+        """Return the supply: two substations and a cabin between them on each branch."""
+        contact, rails = CIRCUITS[circuit]
+        stretch = {"from_km": 0.0, "to_km": self.branch_km}
+        plant = {"no_load_voltage_v": NO_LOAD_V, "internal_resistance_ohm": SOURCE_OHM, "conducts": conducts}
+        pairs = [[f"{branch}{side}" for side in "ab"] for branch in range(self.branches)]
+        return Supply.model_validate(
+            {
+                "substations": [
+                    {"id": f"S{k}{n}", "km": share * self.branch_km, "tracks": pair} | plant
+                    for k, pair in enumerate(pairs)
+                    for n, share in enumerate((0.4, 1.0))
+                ],
+                "section_cabins": [{"id": f"C{k}", "km": 0.7 * self.branch_km, "tracks": pair} for k, pair in enumerate(pairs)],
+                "contact_lines": [stretch | {"resistance_ohm_per_km": contact}],
+                "return_circuit": [stretch | {"resistance_ohm_per_km": rails, "tracks": pair} for pair in pairs],
+                "loads": [
+                    {"id": f"T{k:03d}", "track": self.tracks[k % len(self.tracks)], "km": 0.5, "power_kw": 0.0}
+                    for k in range(self.trains)
+                ],
+            }
+        )
+
+
 CASES = {
     "S": Case("S", 20.0, 2, 4, 3.0e6),
     "M": Case("M", 100.0, 8, 30, 3.5e6),
     "L": Case("L", 500.0, 40, 150, 3.5e6),
 }
+TREE = Tree("tree", 100.0, 10, 30, 3.5e6)
 
 
 @dataclass(frozen=True)
@@ -151,7 +197,8 @@ def compile_case(case: Case, circuit: str, conducts: str = "forward") -> MovingC
 
 def _spots(tables: SupplyTables) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Return by track the places of the cuts [m], the spans between them, their contact lines and their rails."""
-    found = [sorted((s.from_m, s.to_m, s.span, s.positive, s.negative) for s in tables.stretches if s.track == t) for t in "12"]
+    tracks = sorted({stretch.track for stretch in tables.stretches})
+    found = [sorted((s.from_m, s.to_m, s.span, s.positive, s.negative) for s in tables.stretches if s.track == t) for t in tracks]
     cuts = np.array([[row[0] for row in rows] + [rows[-1][1]] for rows in found])
     spans, contact, rails = (np.array([[row[k] for row in rows] for rows in found], np.int64) for k in (2, 3, 4))
     return cuts, spans, contact, rails

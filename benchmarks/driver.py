@@ -61,7 +61,7 @@ def set_train(network, spot, k, x, p):
     conductors: contact line, rails.
     """
     first_port, cuts, spans, contact, rails = spot
-    track = k % 2
+    track = k % spans.shape[0]
     n = min(max(np.searchsorted(cuts[track], x, side="right") - 1, 0), spans.shape[1] - 1)
     port = network.ports[first_port + k]
     port.span = spans[track, n]
@@ -75,8 +75,8 @@ def set_train(network, spot, k, x, p):
 def move_trains(network, spot, trains, t):
     """Place all trains and set their characteristics at the time `t` [s]."""
     start_m, direction, phase_s, power_w = trains
-    length = spot[1][0, -1]
     for k in range(start_m.shape[0]):
+        length = spot[1][k % spot[1].shape[0], -1]
         x = (start_m[k] + direction[k] * SPEED_MPS * t) % length
         set_train(network, spot, k, x, power_w[k] * cycle_share(t + phase_s[k]))
 

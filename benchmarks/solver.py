@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cases import CASES, CIRCUITS, MovingCase, compile_case
+from cases import CASES, CIRCUITS, TREE, MovingCase, compile_case
 from report import goal, table
 from timing import Times, take_turns
 
-GOALS_US = {("M", "common_return"): (20.0, 8.0), ("M", "loop"): (8.0, 5.0)}
+GOALS_US = {("M", "common_return"): (20.0, 8.0), ("M", "loop"): (8.0, 5.0), ("M", "rails_per_track"): (60.0,)}
 """Limit and wish [us] of the time of one solution."""
 
 GROWTH_GOAL = 5.5
@@ -23,6 +23,7 @@ class Result:
     circuit: str
     times: Times
     iterations: float
+    nodes: int  # of the skeleton, and ports: what a linear solution has to work through
     worst_a: float
     cold: int
 
@@ -30,6 +31,7 @@ class Result:
 def measure(steps: int, rounds: int) -> list[Result]:
     """Time all cases with both circuits; all of them take turns."""
     moving = {(name, circuit): compile_case(CASES[name], circuit) for name in CASES for circuit in CIRCUITS}
+    moving["tree", "common_return"] = compile_case(TREE, "common_return")
     said = {key: case.run(steps) for key, case in moving.items()}
     worst = {key: case.worst_balance(steps) for key, case in moving.items()}
     actions = {}
@@ -38,10 +40,11 @@ def measure(steps: int, rounds: int) -> list[Result]:
         actions[f"{key} move"] = _action(case, steps, solve_too=False)
     times = take_turns(actions, rounds)
     results = []
-    for key in moving:
+    for key, case in moving.items():
         each = times[f"{key} solve"].each(steps).minus(times[f"{key} move"].least / steps)
         iterations, cold, _, _ = said[key]
-        results.append(Result(*key, each, iterations / steps, worst[key], cold))
+        network = case.tables.network
+        results.append(Result(*key, each, iterations / steps, network.nodes + len(network.ports), worst[key], cold))
     return results
 
 
@@ -70,7 +73,11 @@ def describe(results: list[Result], steps: int) -> str:
             f"{circuit.replace('_', ' ')} {ratio:.2f} (medians {large.median / middle.median:.2f}),"
             f" goal {GROWTH_GOAL:g}: {goal(ratio, GROWTH_GOAL)}"
         )
+    line, tree = (next(r for r in results if (r.case, r.circuit) == (name, "common_return")) for name in ("M", "tree"))
+    per_node = [1e9 * r.times.least / (r.iterations * r.nodes) for r in (line, tree)]
     return (
         f"### One network solution ({steps} seconds of moving trains)\n\n{table(headings, rows)}\n\n"
-        f"Time of L over time of M: {'; '.join(growth)}. The first second always starts cold and is not counted as such."
+        f"Time of L over time of M: {'; '.join(growth)}. The first second always starts cold and is not counted as such.\n\n"
+        f"A tree of five branches takes {per_node[1]:.1f} ns for each node and port of a linear solution, the line M"
+        f" {per_node[0]:.1f} ns: {per_node[1] / per_node[0]:.2f} times, goal 1.1: {goal(per_node[1] / per_node[0], 1.1)}."
     )
