@@ -197,3 +197,42 @@ def test_long_lists_of_tracks_are_shortened(line):
     tracks = tuple(Track(id=str(number), from_km=float(number), to_km=50.0) for number in range(30))
     long = line(tracks=tracks, gradients=(), speed_limits=(), tunnels=(), stations=(Station(id="X", km=60.0),))
     assert_only(long, "off_track", "line.stations[X].km", "... (30 in all)")
+
+
+# --- connections and rings
+
+
+def connected(*pairs):
+    ends = [({"track": a, "km": x}, {"track": b, "km": y}) for (a, x), (b, y) in pairs]
+    tracks = [{"id": track, "from_km": 0.0, "to_km": 20.0} for track in "12"]
+    return Line.model_validate({"tracks": tracks, "connections": [{"from": one, "to": other} for one, other in ends]})
+
+
+def test_a_connection_from_a_place_to_itself():
+    (problem,) = check_line(connected((("1", 5.0), ("1", 5.0))))
+    assert (problem.code, problem.path, problem.severity) == ("connection_to_itself", "line.connections[0]", "error")
+    assert "track 1: km 5" in problem.found
+    assert check_line(connected((("1", 5.0), ("2", 5.0)), (("1", 5.0), ("1", 5.1)))) == []
+
+
+def test_both_kilometres_of_a_chainage_break_are_one_place():
+    breaks = [{"at_km": 7.0, "continues_as_km": 9.0, "tracks": ["1"]}]
+    line = connected((("1", 7.0), ("1", 9.0)))
+    line = Line.model_validate(line.model_dump(by_alias=True) | {"chainage_breaks": breaks})
+    assert [problem.code for problem in check_line(line)] == ["connection_to_itself"]
+
+
+def test_the_same_connection_twice():
+    (problem,) = check_line(connected((("1", 5.0), ("2", 5.0)), (("2", 5.0), ("1", 5.0))))
+    assert (problem.code, problem.path) == ("duplicate_connection", "line.connections[1]")
+    assert "row 0" in problem.found
+
+
+def test_a_ring_of_kilometres():
+    line = Line.model_validate(
+        {"tracks": [{"id": "1", "from_km": 5.0, "to_km": 20.0}], "chainage_breaks": [{"at_km": 12.0, "continues_as_km": 3.0}]}
+    )
+    (problem,) = check_line(line)
+    assert (problem.code, problem.path) == ("chainage_break", "line.chainage_breaks[0].continues_as_km")
+    assert "cannot jump to km 3: it would run in a ring, past km 5 where the piece before begins" in problem.found
+    assert "from km 5" in problem.allowed

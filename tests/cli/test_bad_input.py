@@ -40,6 +40,16 @@ def replaced(name, old, new):
     return change
 
 
+def added(text):
+    """Return what adds lists to the supply of a study."""
+
+    def change(folder):
+        with (folder / "supply.yaml").open("a", encoding="utf-8") as stream:
+            stream.write(text)
+
+    return change
+
+
 def written(name, content):
     """Return what fills a file of a study."""
     return lambda folder: (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -155,6 +165,58 @@ def test_bad_inputs_are_told_once_with_what_helps(study, tmp_path, capsys, comma
         assert word in told
     assert "Traceback" not in told
     assert [path.name for path in tmp_path.iterdir()] == ["study"]
+
+
+def rows(name, *items):
+    """Return what adds a list to the supply of a study, one row on each line."""
+    return added(f"{name}:\n" + "".join(f"  - {{{item}}}\n" for item in items))
+
+
+TIE = 'id: {}, from: {{track: "1", km: 5}}, to: {{track: "2", km: 5}}'
+SWITCHING = {
+    "a switch that names no section": (
+        rows("switches", 'id: Q, from: {track: "1", km: 9.0}, to: {busbar: S}'),
+        "supply.yaml:9: supply.switches[Q].from.km", ["km 9 is not on track 1", "remedy: correct the km"],
+    ),
+    "a loop of no resistance": (
+        rows("switches", TIE.format("Q"), TIE.format("R")),
+        "supply.yaml:10: supply.switches[R]", ["a loop without resistance: switch Q, switch R", "remedy: give one of them a"],
+    ),
+    "events that contradict": (
+        rows("switch_events", 'time: "06:30", device: S, state: bypassed', 'time: "06:30", device: S, state: rectifiers_out'),
+        "supply.yaml:10: supply.switch_events[1]", ["2 events of S at 06:30:00 (bypassed, rectifiers_out)", "they contradict"],
+    ),
+    "an event of no device": (
+        rows("switch_events", 'time: "06:30", device: S 1 high-km, state: open'),
+        "supply.yaml:9: supply.switch_events[0].device", ["no device 'S 1 high-km'", "remedy: did you mean S 1 high_km?"],
+    ),
+    "a device without reference": (
+        rows("voltage_limiting_devices", 'id: V, track: "1", km: 3.0, closes: [{above_v: 60}]'),
+        "supply.yaml:9: supply.voltage_limiting_devices[V]", ["neither leakage nor earthing", "remedy: give leakage_s_per_km"],
+    ),
+    "a profile of two signs": (
+        rows("loads", 'id: x, track: "1", km: 3, profile: [{time: "6:00", power_kw: 1}, {time: "6:30", power_kw: -1}]'),
+        "supply.yaml:9: supply.loads[x]", ["a profile does not change its sign", "as two loads"],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("change, place, words".split(", "), SWITCHING.values(), ids=SWITCHING)
+def test_faults_of_switches_and_rails_are_told_once(study, capsys, change, place, words):
+    change(study)
+    assert main(["run", "study"]) == 1
+    told = capsys.readouterr().err
+    assert told.count("  error: ") == 1, told
+    assert f"  error: {place}: " in told
+    for word in words:
+        assert word in told
+
+
+def test_a_stretch_that_dies_during_the_day_is_a_warning(study, capsys):
+    rows("switch_events", 'time: "06:30", device: S 1 high_km, state: open')(study)
+    assert main(["check", "study"]) == 0
+    told = capsys.readouterr().err
+    assert "  warning: supply.yaml:9: supply.switch_events[0]: from 06:30:00 on no substation in service reaches track 1" in told
 
 
 @pytest.mark.parametrize(

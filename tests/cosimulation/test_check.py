@@ -55,3 +55,22 @@ def test_an_unknown_table_is_told_with_those_that_exist():
 def test_a_warm_up_leaves_a_step(warm_up, told):
     # steps of 4 s start at 0, 4 and 8 s
     assert ("clock.warm_up" in problems_of(load("x"), clock={"step_s": 4.0, "warm_up": warm_up})) == told
+
+
+def test_switching_outside_the_clock():
+    cabin = [{"id": "C", "km": 10.0, "state": "open"}]
+    events = [{"time": time, "device": "C", "state": state} for time, state in ((0.0, "closed"), (5.0, "open"), (10.0, "closed"))]
+    clock = {"start": 1.0, "end": 10.0}
+    found = problems_of(section_cabins=cabin, switch_events=events, clock=clock)
+    assert list(found) == ["supply.switch_events[0].time", "supply.switch_events[2].time"]
+    assert {(problem.code, problem.severity) for problem in found.values()} == {("event_outside_clock", "warning")}
+    assert "00:00:00, before the run" in found["supply.switch_events[0].time"].found
+    assert "00:00:10, after the run" in found["supply.switch_events[2].time"].found
+    assert "00:00:01 to 00:00:10" in found["supply.switch_events[0].time"].allowed
+
+
+def test_connections_are_no_problem_of_their_own():
+    scenario = make_scenario(load("x"))
+    ends = [{"track": "1", "km": 4.0}, {"track": "2", "km": 4.5}]
+    line = scenario.line.model_validate(scenario.line.model_dump() | {"connections": [{"from": ends[0], "to": ends[1]}]})
+    assert check_scenario(scenario.model_copy(update={"line": line})) == []

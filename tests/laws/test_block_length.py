@@ -22,6 +22,7 @@ SCENARIO = make_scenario(
     load("feeds", 9.0, "2", power_kw=-6000.0, **{"from": 20.0, "to": 44.0}),
     load("steady", 18.0, current_a=700.0, **{"from": 30.0}),
     load("too much", 10.0, power_kw=9500.0, limits="none", **{"from": 40.0, "to": 46.0}),
+    load("changes", 16.0, "2", power_kw=None, profile=[{"time": 9.0, "power_kw": 500.0}, {"time": 25.0, "power_kw": 3000.0}]),
     clock={"end": float(STEPS)},
     section_cabins=[{"id": "C", "km": 10.0, "state": "bypassed"}],
 )
@@ -57,7 +58,7 @@ def test_the_run_is_no_trivial_one(whole):
     tables = fresh_tables()
     buffers = new_buffers(tables, STEPS)
     advance(tables, new_state(tables), buffers, STEPS)
-    assert len(np.unique(buffers.load_v[:, 0])) == 8  # every switch changes the network
+    assert len(np.unique(buffers.load_v[:, 0])) == 10  # every switch changes the network
     assert set(buffers.steps["status"]) == {0, 2}
 
 

@@ -26,7 +26,17 @@ from tractionpower.model.drive import (
 from tractionpower.model.limits import Limit, overlay
 from tractionpower.model.line import Connection, Curve, Gradient, Line, SpeedLimit, Station, Track, TrackPoint
 from tractionpower.model.scenario import Clock, Output, Scenario
-from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, SectionPoint, Substation, Supply, Wire
+from tractionpower.model.supply import (
+    ContactLine,
+    Load,
+    LoadPoint,
+    ReturnCircuit,
+    SectionCabin,
+    SectionPoint,
+    Substation,
+    Supply,
+    Wire,
+)
 from tractionpower.model.switchgear import Feeder
 from tractionpower.model.timetable import Call, Leg, Start, Timetable, TrainRun
 from tractionpower.model.vehicle import Adhesion, Auxiliaries, Brake, Part, Resistance, Train, Vehicle
@@ -112,6 +122,11 @@ SUBSTATIONS = st.builds(
 @st.composite
 def loads(draw: st.DrawFn) -> Load:
     quantity = draw(st.sampled_from(["power_kw", "current_a"]))
+    demand = draw(st.just(None) | st.lists(reals(0.0), min_size=1, max_size=60))
+    given = {quantity: draw(reals())}
+    if demand is not None:  # a profile, long enough now and then for a file of its own
+        sign = draw(st.sampled_from([-1.0, 1.0]))
+        given = {"profile": tuple(LoadPoint(time=0.25 * k, **{quantity: sign * value}) for k, value in enumerate(demand))}
     times = draw(st.none() | st.tuples(TIMES, TIMES).filter(lambda pair: abs(pair[0] - pair[1]) > 1e-3).map(sorted))
     return Load(
         id=draw(NAMES),
@@ -121,7 +136,7 @@ def loads(draw: st.DrawFn) -> Load:
         fold_back_from_v=draw(st.none() | positive(5000)),
         from_=times[0] if times else None,
         to=times[1] if times else None,
-        **{quantity: draw(reals())},
+        **given,
     )
 
 

@@ -96,7 +96,7 @@ def test_a_batch_is_validated_once_at_the_end(scenario):
     assert (changed.supply.loads[1].power_kw, changed.supply.loads[1].current_a) == (4000.0, None)
     problem = refused(scenario, "supply.loads[x].power_kw=4000")
     assert (problem.code, problem.path) == ("bad_value", "supply.loads[x]")
-    assert "either power_kw or current_a" in problem.found
+    assert "one of power_kw, current_a, profile" in problem.found
 
 
 def test_later_changes_win_and_none_is_no_change(scenario):

@@ -40,10 +40,13 @@ class Draw:
 
     def supply(self, loads=()):
         rng = self.rng
+        substations = tuple(self._substation(k) for k in range(rng.integers(1, 7)))
+        cabins = tuple(self._cabin(k) for k in range(rng.integers(0, 5)))
+        substations, cabins = without_loops(substations, cabins)
         return Supply(
             system=self.system,
-            substations=tuple(self._substation(k) for k in range(rng.integers(1, 7))),
-            section_cabins=tuple(self._cabin(k) for k in range(rng.integers(0, 5))),
+            substations=substations,
+            section_cabins=cabins,
             section_points=tuple(point for k in range(rng.integers(0, 4)) if (point := self._point(k))),
             contact_lines=self.contact,
             return_circuit=self.returns,
@@ -168,6 +171,27 @@ class Draw:
         elif how > 0.4:
             near = rng.uniform(low, high)
         return track, float(min(max(near, low), high))
+
+
+def without_loops(substations, cabins):
+    """Return stations without loops of no resistance between those at one place, as the checks demand.
+
+    Substations there have feeders with resistance; of cabins only the first stays.
+    """
+    kept = []
+    for cabin in cabins:
+        if not any(_shares(cabin, other) for other in kept):
+            kept.append(cabin)
+    loose = []
+    for station in substations:
+        shared = any(other is not station and _shares(station, other) for other in (*substations, *kept))
+        ohm = max(station.feeder_resistance_ohm, 0.003) if shared else station.feeder_resistance_ohm
+        loose.append(station.model_copy(update={"feeder_resistance_ohm": ohm}))
+    return tuple(loose), tuple(kept)
+
+
+def _shares(station, other):
+    return abs(station.km - other.km) < 0.003
 
 
 def tame_dead_loads(supply, live):

@@ -9,7 +9,8 @@ from typing import Literal, get_args
 from tractionpower.alignment.axis import TrackAxis, compile_axes, follow_breaks, tracks_at
 from tractionpower.alignment.intervals import Patch, Row, find_gaps, find_overlaps, group, name_km, name_tracks, place_rows
 from tractionpower.errors import Problem
-from tractionpower.model.line import Direction, Line, SpeedLimit, Station, Track
+from tractionpower.kernels.tables import SHARED_NODE_M
+from tractionpower.model.line import Connection, Direction, Line, SpeedLimit, Station, Track
 
 Axes = Mapping[str, TrackAxis]
 
@@ -147,6 +148,8 @@ def _check_breaks(line: Line, axes: Axes) -> list[Problem]:
     for (index, end, low, high), names in sorted(faults.items()):
         km = getattr(line.chainage_breaks[index], end)
         found = f"the kilometrage of {name_tracks(names)} cannot jump {'at' if end == 'at_km' else 'to'} km {name_km(km)}"
+        if end == "continues_as_km" and km < low:
+            found += f": it would run in a ring, past km {name_km(low)} where the piece before begins"
         allowed = f"{'above' if end == 'at_km' else 'from'} km {name_km(low)}, below km {name_km(high)}"
         remedy = "correct the km, the tracks or the break before"
         problems.append(Problem("chainage_break", f"line.chainage_breaks[{index}].{end}", found, allowed, remedy))
@@ -226,9 +229,27 @@ def _one_way(up: bool, down: bool) -> str:
 
 def _check_connections(line: Line, axes: Axes) -> list[Problem]:
     problems = []
+    known: dict[frozenset[tuple[str, float]], int] = {}
     for index, connection in enumerate(line.connections):
         for end, point in (("from", connection.from_), ("to", connection.to)):
             path = f"line.connections[{index}].{end}"
             problems += check_tracks(f"{path}.track", (point.track,), axes)
             problems += check_place(f"{path}.km", point.km, (point.track,), axes)
+        path = f"line.connections[{index}]"
+        ends = frozenset((point.track, point.km) for point in (connection.from_, connection.to))
+        if _is_one_place(connection, axes):
+            found = f"both ends of the connection are one place on track {connection.to.track}: km {name_km(connection.to.km)}"
+            remedy = "name the track and km of the other line, or leave the connection out"
+            problems.append(Problem("connection_to_itself", path, found, "two places", remedy))
+        elif known.setdefault(ends, index) != index:
+            found = f"the same connection as row {known[ends]}"
+            problems.append(Problem("duplicate_connection", path, found, "each connection once", "leave one out"))
     return problems
+
+
+def _is_one_place(connection: Connection, axes: Axes) -> bool:
+    """Tell whether a connection leads from a place to itself, also through the two kilometres of a chainage break."""
+    (track, km), (other, to_km) = ((end.track, end.km) for end in (connection.from_, connection.to))
+    if track != other or track not in axes or not (axes[track].contains(km) and axes[track].contains(to_km)):
+        return False
+    return abs(axes[track].metre(km) - axes[track].metre(to_km)) < SHARED_NODE_M

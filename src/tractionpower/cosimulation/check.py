@@ -23,7 +23,7 @@ def check_scenario(scenario: Scenario) -> list[Problem]:
         *check_movement(scenario),
         *_check_clock(scenario),
         *_check_output(scenario),
-        *_check_connections(scenario),
+        *_check_events(scenario),
     ]
 
 
@@ -61,9 +61,17 @@ def _check_output(scenario: Scenario) -> list[Problem]:
     return problems
 
 
-def _check_connections(scenario: Scenario) -> list[Problem]:
-    if not scenario.line.connections:
-        return []
-    remedy = "tie tracks by a substation or a section cabin where their currents shall meet"
-    found = f"{len(scenario.line.connections)} connections, which carry no current in this version"
-    return [Problem("connections_unused", "line.connections", found, remedy=remedy, severity="warning")]
+def _check_events(scenario: Scenario) -> list[Problem]:
+    """Return a warning for each switch event outside the simulated time."""
+    clock, problems = scenario.clock, []
+    allowed = f"{format_time(clock.start)} to {format_time(clock.end)}, the clock of the study"
+    for index, event in enumerate(scenario.supply.switch_events):
+        if clock.start <= event.time < clock.end:
+            continue
+        what = f"{event.device} is switched at {format_time(event.time)}"
+        found, remedy = f"{what}, after the run", "it never happens in this run"
+        if event.time < clock.start:
+            found, remedy = f"{what}, before the run", "it holds from the start on; make it the normal state, or correct the time"
+        path = f"supply.switch_events[{index}].time"
+        problems.append(Problem("event_outside_clock", path, found, allowed, remedy, "warning"))
+    return problems

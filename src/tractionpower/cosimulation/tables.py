@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.alignment.path import RoutePath
-from tractionpower.kernels.block_tables import FLEET, LOAD, SOURCE, WAY, BlockTables
+from tractionpower.kernels.block_tables import FLEET, LOAD, LOAD_STEP, SOURCE, WAY, BlockTables
 from tractionpower.kernels.train_port import ROOM
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import Supply
 from tractionpower.movement.compile import Movement, compile_trains
-from tractionpower.supply.characteristics import no_load_voltage
+from tractionpower.supply.characteristics import load_steps, no_load_voltage
 from tractionpower.supply.compile import Stretch, SupplyTables, compile_network
 
 ROUNDING_S = 5e-7
@@ -57,7 +57,7 @@ def assemble(scenario: Scenario, movement: Movement, states: Supply) -> Compiled
     clock = np.array([scenario.clock.start, scenario.clock.step_s, coupling_voltage(scenario, supply) or 0.0])
     entries = np.argsort(movement.tables.trains["start_s"], kind="stable").astype(np.int64)
     block = BlockTables(
-        supply.network, supply.edges, _sources(supply), _loads(supply), supply.link_table, supply.terms,
+        supply.network, supply.edges, _sources(supply), *_loads(supply), supply.link_table, supply.terms,
         supply.rail_nodes, supply.earth_edge, supply.triggers, supply.section_table, clock,
         movement.tables, fleet, ways, entries,
     )  # fmt: skip
@@ -113,9 +113,15 @@ def _sources(supply: SupplyTables) -> NDArray[np.void]:
     return sources
 
 
-def _loads(supply: SupplyTables) -> NDArray[np.void]:
+def _loads(supply: SupplyTables) -> tuple[NDArray[np.void], NDArray[np.void]]:
+    """Return the loads and the steps of their demand."""
     loads = np.zeros(len(supply.loads), LOAD)
+    steps = [np.array(load_steps(load), LOAD_STEP) for load in supply.loads]
     loads["port"] = supply.load_port
     loads["from_s"] = [-np.inf if load.from_ is None else load.from_ - ROUNDING_S for load in supply.loads]
     loads["to_s"] = [np.inf if load.to is None else load.to - ROUNDING_S for load in supply.loads]
-    return loads
+    loads["steps"] = [len(rows) for rows in steps]
+    loads["first_step"] = np.cumsum(loads["steps"]) - loads["steps"]
+    pool = np.concatenate([np.zeros(0, LOAD_STEP), *steps])
+    pool["time_s"] -= ROUNDING_S
+    return loads, pool

@@ -20,6 +20,9 @@ from tractionpower.io.yaml_files import read_yaml
 
 Model = TypeVar("Model", bound=BaseModel)
 
+_PLAIN = ("number", "integer", "boolean", "time", "choice", "identifier", "text")
+"""Kinds of cells that hold one value."""
+
 
 def read_document(path: Path, model: type[Model]) -> Model:
     """Read one file that stands for itself as a model.
@@ -127,6 +130,7 @@ class Reader:
             return {loc}
         self._tell(table.problems)
         data[key], mark.children[key] = table.rows, table.mark
-        # The rows may name further files, relative to their own.
-        deeper = self._expand(table.rows, shape, table.mark, loc, replace(content, file=source.file))
+        # The rows may name further files, relative to their own; most cannot, and some are many.
+        nested = any((child := row.child(key)) is not None and child.kind not in _PLAIN for key in row.keys)
+        deeper = self._expand(table.rows, shape, table.mark, loc, replace(content, file=source.file)) if nested else set()
         return {loc, *deeper} if table.problems else deeper

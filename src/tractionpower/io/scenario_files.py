@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from tractionpower.errors import InputError, Problem
 from tractionpower.io.conductor_files import CONDUCTORS, shipped_conductors
+from tractionpower.io.csv_files import csv_text
 from tractionpower.io.documents import Reader
 from tractionpower.io.file_names import file_names
 from tractionpower.io.finder import STUDY_FILE, Study, find_study
@@ -22,7 +23,7 @@ from tractionpower.io.rolling_stock import RollingStock
 from tractionpower.io.stock_finder import FOLDER
 from tractionpower.io.text_files import Source, relative_label, write_files
 from tractionpower.io.yaml_text import document
-from tractionpower.model.base import FORMAT
+from tractionpower.model.base import FORMAT, format_time
 from tractionpower.model.change import apply_changes
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.line import Line
@@ -32,6 +33,9 @@ from tractionpower.model.timetable import Timetable
 from tractionpower.model.vehicle import Train, Vehicle
 
 Model = TypeVar("Model", bound=BaseModel)
+
+LONG_PROFILE = 50
+"""Rows of a load's profile beyond which it is saved as a CSV file of its own."""
 
 _OF_THE_STUDY = ("name", "clock", "coupling", "coupling_voltage_v", "seed", "coast_without_voltage_s", "output")
 
@@ -118,14 +122,20 @@ def save_scenario(scenario: Scenario, folder: str | Path) -> None:
     """Write a scenario as a study; loading it gives an equal scenario with the same `input_hash`.
 
     Keys that have their default are left out; of limits and conductors only rows that differ from the shipped ones are written.
-    Trains and vehicles go into ``rollingstock`` beside the study.
+    Trains and vehicles go into ``rollingstock`` beside the study, long profiles of loads into ``profiles``.
 
     Raises
     ------
     OutputError
         If a file cannot be written.
     """
-    texts = {"line.yaml": document(_dump(scenario.line)), "supply.yaml": document(_dump(scenario.supply))}
+    profiles = _profile_texts(scenario.supply)
+    supply = _dump(scenario.supply)
+    for name, load in zip(profiles, supply.get("loads", ()), strict=False):
+        if profiles[name]:
+            load["profile"] = name
+    texts = {"line.yaml": document(_dump(scenario.line)), "supply.yaml": document(supply)}
+    texts |= {name: text for name, text in profiles.items() if text}
     study: dict[str, Any] = {"format": FORMAT, "line": "line.yaml", "supply": "supply.yaml"}
     if scenario.timetable.trains:
         study["timetable"] = "timetable.yaml"
@@ -143,6 +153,18 @@ def save_scenario(scenario: Scenario, folder: str | Path) -> None:
 
 def _dump(model: BaseModel) -> dict[str, Any]:
     return {"format": FORMAT, **model.model_dump(mode="json", by_alias=True, exclude_defaults=True)}
+
+
+def _profile_texts(supply: Supply) -> dict[str, str]:
+    """Return the CSV files of the profiles of all loads, in their order; empty texts for those that need none."""
+    texts = {}
+    for number, load in enumerate(supply.loads, 1):
+        rows = load.profile or ()
+        name = f"profiles/load-{number}.csv"  # by number: two loads of one id are told as an error only when it is read
+        columns = [column for column in ("power_kw", "current_a") if rows and getattr(rows[0], column) is not None]
+        cells = ([format_time(row.time), row.value] for row in rows)
+        texts[name] = csv_text(["time", *columns], cells) if len(rows) > LONG_PROFILE else ""
+    return texts
 
 
 def _stock_texts(kind: str, items: tuple[Train, ...] | tuple[Vehicle, ...]) -> dict[str, str]:

@@ -93,18 +93,21 @@ def _watch(tables, state, buffers, row, t):
 def _restore_loads(tables, state):
     """Write what the state says into the tables, which another run may have used since."""
     for k in range(tables.loads.shape[0]):
-        tables.network.ports[tables.loads[k].port].scale = state.result[0].factor if state.load_on[k] else 0.0
+        tables.network.ports[tables.loads[k].port].scale = state.result[0].factor * state.load_scale[k]
 
 
 @njit
 def _switch_loads(tables, state, t):
-    """Switch loads by the time of day; tell whether one has changed."""
+    """Set the demand of loads by the time of day; tell whether one has changed."""
     changed = False
     for k in range(tables.loads.shape[0]):
-        load = tables.loads[k]
-        on = load.from_s <= t < load.to_s
-        changed = changed or on != state.load_on[k]
-        state.load_on[k] = on
+        load, n = tables.loads[k], state.load_step[k]
+        while n + 1 < load.steps and tables.load_steps[load.first_step + n + 1].time_s <= t:
+            n += 1
+        state.load_step[k] = n
+        scale = tables.load_steps[load.first_step + n].factor if n >= 0 and load.from_s <= t < load.to_s else 0.0
+        changed = changed or scale != state.load_scale[k]
+        state.load_scale[k] = scale
     return changed
 
 
@@ -112,7 +115,7 @@ def _switch_loads(tables, state, t):
 def _solve_step(tables, state, warm):
     network, work, result = tables.network, state.work, state.result[0]
     for k in range(tables.loads.shape[0]):  # the step before may have cut them
-        network.ports[tables.loads[k].port].scale = 1.0 if state.load_on[k] else 0.0
+        network.ports[tables.loads[k].port].scale = state.load_scale[k]
     place_ports(network, work)
     status, iterations, worst, factor, port = solve(network, work, warm)
     heat, gap, leaked = conductor_flows(network, work, state.balance)

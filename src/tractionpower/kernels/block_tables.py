@@ -14,8 +14,11 @@ from tractionpower.kernels.train_tables import TRAIN_ROW, TrainState, TrainTable
 SOURCE = np.dtype([("port", "i8"), ("positive", "i8"), ("negative", "i8"), ("no_load_v", "f8")])
 """A substation; its port is -1 when its rectifiers are out, its nodes are -1 when its busbars are not in the network."""
 
-LOAD = np.dtype([("port", "i8"), ("from_s", "f8"), ("to_s", "f8")])
-"""A fixed load and the times of day between which it is on."""
+LOAD = np.dtype([("port", "i8"), ("from_s", "f8"), ("to_s", "f8"), ("first_step", "i8"), ("steps", "i8")])
+"""A fixed load, the times of day between which it is on, and the steps of its demand."""
+
+LOAD_STEP = np.dtype([("time_s", "f8"), ("factor", "f8")])
+"""From when [s after midnight] which part of its characteristic a load takes, until the next step; before the first none."""
 
 SECTION = np.dtype([("contact", "i8"), ("rail", "i8"), ("port", "i8")])
 """A place whose voltage is recorded: two skeleton nodes, or a port in a span (else -1); neither where nothing feeds."""
@@ -63,8 +66,8 @@ class BlockTables(NamedTuple):
     ----------
     network
         The compiled network; `ports.scale` is written by the devices.
-    edges, sources, loads
-        Record arrays of `EDGE`, `SOURCE`, `LOAD`.
+    edges, sources, loads, load_steps
+        Record arrays of `EDGE`, `SOURCE`, `LOAD`, `LOAD_STEP`.
     links, terms
         Breakers and switches whose currents are recorded, record array of `LINK`, and their terms, of `TERM`.
     rails
@@ -89,6 +92,7 @@ class BlockTables(NamedTuple):
     edges: NDArray[np.void]
     sources: NDArray[np.void]
     loads: NDArray[np.void]
+    load_steps: NDArray[np.void]
     links: NDArray[np.void]
     terms: NDArray[np.void]
     rails: NDArray[np.int64]
@@ -138,7 +142,8 @@ class State(NamedTuple):
 
     work: Work
     progress: NDArray[np.void]  # one record of PROGRESS
-    load_on: NDArray[np.bool_]
+    load_scale: NDArray[np.float64]  # part of its characteristic that each load takes, 0 when it is off
+    load_step: NDArray[np.int64]  # step of its demand that each load has reached, -1 before the first
     balance: NDArray[np.float64]
     result: NDArray[np.void]  # one record of STEP_RESULT
     trains: TrainState
@@ -174,7 +179,8 @@ def new_state(tables: BlockTables) -> State:
     return State(
         work=work,
         progress=np.zeros(1, PROGRESS),
-        load_on=np.zeros(len(tables.loads), np.bool_),
+        load_scale=np.zeros(len(tables.loads)),
+        load_step=np.full(len(tables.loads), -1, np.int64),
         balance=np.zeros(network.nodes + 1),
         result=np.zeros(1, STEP_RESULT),
         trains=new_train_state(tables.trains),

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from tractionpower.model.base import Count, Declaration, Format, Identifier, Real, TimeOfDay, Tracks
+from tractionpower.model.base import Count, Declaration, Format, Identifier, Real, TimeOfDay, Tracks, format_time
 from tractionpower.model.earthing import Bonds, Earthing, VoltageLimitingDevice
 from tractionpower.model.line import Stretch
 from tractionpower.model.quantity import field
@@ -194,6 +195,17 @@ class LoadPoint(Declaration):
     power_kw: Real | None = field("power_kw", "Power taken from the line from then on.", default=None)
     current_a: Real | None = field("current_a", "Current taken from the line from then on.", default=None)
 
+    @model_validator(mode="after")
+    def _power_or_current(self) -> LoadPoint:
+        if (self.power_kw is None) == (self.current_a is None):
+            raise PydanticCustomError("power_or_current", "a row of a load's profile has either power_kw or current_a")
+        return self
+
+    @property
+    def value(self) -> float:
+        """Power [kW] or current [A], whichever is given."""
+        return self.power_kw if self.power_kw is not None else self.current_a or 0.0
+
 
 class Load(Declaration):
     """A fixed tap between contact line and rail: a depot, heating, a measured load."""
@@ -229,6 +241,21 @@ class Load(Declaration):
             raise PydanticCustomError("power_or_current", "a load has one of power_kw, current_a, profile")
         if self.from_ is not None and self.to is not None and not self.from_ < self.to:
             raise PydanticCustomError("times", "from is not before to")
+        return self
+
+    @model_validator(mode="after")
+    def _one_characteristic(self) -> Load:
+        rows = self.profile or ()
+        for before, row in pairwise(rows):
+            if not before.time < row.time:
+                times = {"a": format_time(row.time), "b": format_time(before.time)}
+                raise PydanticCustomError("profile_times", "the times of a profile rise: {a} stands behind {b}", times)
+        if len({row.power_kw is None for row in rows}) > 1:
+            raise PydanticCustomError("profile_kinds", "a profile has either power_kw or current_a in all of its rows")
+        if any(row.value > 0.0 for row in rows) and any(row.value < 0.0 for row in rows):
+            # Feeding back has another characteristic: it is limited from above, taking from below.
+            text = "a profile does not change its sign: describe what takes and what feeds back as two loads"
+            raise PydanticCustomError("profile_signs", text)
         return self
 
 

@@ -57,17 +57,18 @@ def load_segments(load: Load, voltages: SystemVoltages) -> Segments:
     """Return I(U) of a fixed load, with the limits of its voltage range or, for ``limits: none``, without.
 
     Constant between U_min2 and U_max2, below linear in U to zero at 0 V; what feeds back is reduced linearly from
-    `fold_back_from_v` (default U_max1) to zero at U_max2.
+    `fold_back_from_v` (default U_max1) to zero at U_max2. All of it is proportional to power or current, so a profile
+    is the characteristic of its greatest value times a factor (`load_steps`).
     """
     low = floor_voltage(load, voltages) or voltages.u_min2
-    if load.power_kw is not None:
-        power = 1000.0 * load.power_kw
+    value = greatest_demand(load)
+    if is_power(load):
+        power = 1000.0 * value
         constant: tuple[float, float, float] = (0.0, 0.0, power)
         at_low = power / low
     else:
-        assert load.current_a is not None  # the model allows no other load
-        constant = (load.current_a, 0.0, 0.0)
-        at_low = load.current_a
+        constant = (value, 0.0, 0.0)
+        at_low = value
     segments: Segments = [(_DOWN, 0.0, 0.0, 0.0), (0.0, 0.0, at_low / low, 0.0), (low, *constant)]
     if load.limits == "range" and at_low < 0.0:
         high = voltages.u_max2
@@ -77,6 +78,26 @@ def load_segments(load: Load, voltages: SystemVoltages) -> Segments:
         # (a + c/U) (high - U)/width
         segments += [(from_v, (a * high - c) / width, -a / width, c * high / width), (high, 0.0, 0.0, 0.0)]
     return segments
+
+
+def is_power(load: Load) -> bool:
+    """Tell whether a load is given by its power; else by its current."""
+    return load.power_kw is not None if load.profile is None else load.profile[0].power_kw is not None
+
+
+def greatest_demand(load: Load) -> float:
+    """Return the power [kW] or current [A] of a load, of a profile the one with the greatest absolute value."""
+    if load.profile is not None:
+        return max((row.value for row in load.profile), key=abs)
+    return load.power_kw if load.power_kw is not None else load.current_a or 0.0
+
+
+def load_steps(load: Load) -> list[tuple[float, float]]:
+    """Return from when [s after midnight] which part of its greatest demand a load takes; before the first nothing."""
+    base = greatest_demand(load)
+    if load.profile is None or base == 0.0:
+        return [(_DOWN, 1.0)]
+    return [(row.time, row.value / base) for row in load.profile]
 
 
 def floor_voltage(load: Load, voltages: SystemVoltages) -> float:

@@ -21,6 +21,9 @@ from tractionpower.reporting.workbook.trains import formation_in_words, route_in
 
 LEFT_OUT = "A list or field that the study does not give is left out; others have their defaults."
 
+MOST_ROWS = 12
+"""Rows that a cell shows of a list within a row, such as the profile of a load."""
+
 _NO_LISTS = ("format", "name", "source", "system")
 """Fields that are no lists of devices, or are told elsewhere."""
 
@@ -98,9 +101,13 @@ def in_words(value: Any) -> Any:
     """Return what stands in a cell for a value of a declaration: lists and parts in one line."""
     if isinstance(value, BaseModel):
         given = {name: getattr(value, name) for name in type(value).model_fields}
+        written = value.model_dump(mode="json")  # where a time of day is a text
+        given |= {name: text for name, text in written.items() if isinstance(text, str) and isinstance(given[name], float)}
         return ", ".join(f"{name.replace('_', ' ')} {in_words(part)}" for name, part in given.items() if part is not None)
     if isinstance(value, dict):
         return "; ".join(f"{key}: {in_words(part)}" for key, part in value.items())
+    if isinstance(value, tuple | list) and len(value) > MOST_ROWS and isinstance(value[0], BaseModel):
+        return f"{len(value)} rows, from {in_words(value[0])} to {in_words(value[-1])}"
     if isinstance(value, tuple | list):
         return ("; " if value and isinstance(value[0], BaseModel) else ", ").join(str(in_words(part)) for part in value)
     if isinstance(value, bool):
