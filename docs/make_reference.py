@@ -22,16 +22,20 @@ from pydantic_core import PydanticUndefined
 import tractionpower as tp
 from tractionpower.cosimulation import events
 from tractionpower.io.conductor_files import shipped_conductors
+from tractionpower.io.limits_files import shipped_limits
 from tractionpower.io.templates import write_template
 from tractionpower.kernels.train_tables import LIMITED_BY, PHASES
 from tractionpower.model.conductors import Conductor
-from tractionpower.model.limits import Limit
+from tractionpower.model.limits import Limit, common_limits
 from tractionpower.model.line import Line
+from tractionpower.model.quantity import unit_of
 from tractionpower.model.scenario import StudyFile
 from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Timetable
 from tractionpower.model.vehicle import Train, Vehicle
+from tractionpower.results import rails
 from tractionpower.results.columns import TABLES
+from tractionpower.results.touch import touch_limits
 from tractionpower.results.windows import WINDOWS_S, window_label
 
 HERE = Path(__file__).parent
@@ -98,6 +102,11 @@ EVENTS = {
     "substation_blocked": ("spell in which the rectifiers block", "highest voltage of the busbar [V]", "no-load voltage"),
     "not_servable": ("spell in which all demand had to be cut (`limits: none`)", "smallest share that can be served", "1"),
     "not_converged": ("spell of steps in which a node does not balance", "largest imbalance [A]", "limit of a flag"),
+    "switched": ("a device gets another state, by time or by reclosure", "", ""),
+    "tripped": ("a breaker opens by overcurrent", "current [A]", "current above which it trips"),
+    "vld_closed": ("a voltage-limiting device closes", "rail potential [V]", "potential above which it closes"),
+    "line_dead": ("nothing feeds a stretch of contact line any more", "", ""),
+    "line_live": ("a stretch of contact line is fed again", "", ""),
     "limit_violated": ("a verdict that is not met, at the time of its worst value", "what was found", "the limit"),
 }
 SPELLS = "A spell is one event, at its start; `message` tells its end. `track` and `position_km` are those of the start."
@@ -120,9 +129,17 @@ RUN_JSON = {
     "trains": "each with `status`, `entered_s`, `finished_s`, `distance_m`, `overdue_s` at a call not reached; "
     "status: `left` the line, `before` the clock even, `stays` at its end, `on_line` at the end of the clock, `stuck` there (its "
     "effort has not moved it for a minute or more), `outside`: never came",
+    "lumping": "error that lumping the rails into the contact line would make, at the step with the lowest voltage of a train: "
+    "`train`, `time`, `voltage_v`, `lumped_voltage_v`, `largest_difference_v` at any train or load; empty without trains",
     "notes": "what a reader has to know: constant voltage, trains that are stuck",
     "files": "size and SHA-256 of every file",
 }
+RUN_JSON_OF_RAILS = {
+    "return_circuit": "where something defines remote earth: how many places, and `touch_voltage` and `stray_current`, found "
+    "against allowed, with what is told and not judged (`met` is null)",
+}
+"""Keys that only some runs have."""
+
 FILES_OF_A_RUN = """## Other files
 
 | file | holds |
@@ -130,8 +147,8 @@ FILES_OF_A_RUN = """## Other files
 | `run.json` | How the run went, below. Written last: results are what it names. |
 | `key_figures.json` | The figures that sum the run up, below. |
 | `scenario.json` | What was computed, resolved: all inputs in one file. Its SHA-256 is the `input_hash` of the run. |
-| `figures/` | PNG: train graph, voltages along the line, loads of substations; in `trains/` single trains. |
-| `report.xlsx` | Verdicts in words, limits, trains, calls, substations, energy, charts, events, inputs, definitions. |
+| `figures/` | PNG: train graph, voltages along the line, loads of substations, rail potentials; in `trains/` single trains. |
+| `report.xlsx` | Verdicts, limits, trains, calls, substations, return circuit, energy, charts, events, inputs, definitions. |
 | `.running/` | Complete parts of the tables while a run lasts. `tractionpower report DIR --partial` reads them after a crash. |
 
 Figures and workbook are made from the tables: `tractionpower report DIR` writes them again without a simulation. A file that
@@ -153,14 +170,17 @@ VERDICTS = """## Verdicts
 
 Each has `name`, `value`, `unit`, `place`, `time`, `limit` with `limit_value`, `source` and `status`, and `met`. A voltage is
 beyond a limit when it is so by more than 0.1 V. Limits are rows of `src/tractionpower/data/limits.csv`, overlaid by `limits:` of
-the study; a verdict whose limit the system has no row for is left out.
+the study; a verdict whose limit the system has no row for is left out. Rows of system `dc` hold for all DC systems that have
+none of their own. Those of `touch_` and `stray_` are judged where the rails have a potential (docs/model.md, Rail potential);
+`limit_value` of a touch voltage is how long a spell above it may last.
 
 | verdict | unit | limit | status of the limit that ships for dc3000 |
 |---|---|---|---|"""
 FIGURES = """## key_figures.json
 
 A list of `name`, `value`, `unit`, `place`, `time` (HH:MM:SS), `definition`, `status`. The place is `train ID`, `substation ID`,
-`load ID` or `zone A–B` (between two neighbouring substations); figures of the whole run have none, or that of the extreme value.
+`load ID`, `zone A–B` (between two neighbouring substations), `earthing ID` or `voltage-limiting device ID`; figures of the
+whole run have none, or that of the extreme value.
 W in a name is a window: WINDOWS.
 Windows longer than the run are left out, as are figures without a value, such as the delay of a train without planned times.
 Steps before the end of `clock.warm_up` count in lengths, times, delays, energies of auxiliaries and losses, and the energies of
@@ -189,10 +209,11 @@ def results_page() -> str:
         if name == "trains":
             parts += [_words("phase", PHASE, PHASES), _words("limited_by", LIMIT, LIMITED_BY)]
     parts += [_kinds_of_events(), FILES_OF_A_RUN, _keys_of_run(results.run)]
-    parts += [VERDICTS, *_verdicts(results.run["verdicts"]), ""]
+    parts += [VERDICTS, *_verdicts(results.run["verdicts"]), *_verdicts_of_rails(), ""]
     parts += [
         FIGURES.replace("WINDOWS", ", ".join(f"`{window_label(window)}`" for window in WINDOWS_S)),
         *_figures(results.key_figures),
+        *_figures_of_rails(),
     ]
     return "\n".join([*parts, EXPORT])
 
@@ -252,7 +273,8 @@ def _kinds_of_events() -> str:
 
 def _keys_of_run(run: dict[str, Any]) -> str:
     _agree("run.json", [key for keys in RUN_JSON for key in keys.split(", ")], [*run, "files"])
-    rows = [f"| {', '.join(f'`{key}`' for key in keys.split(', '))} | {meaning} |" for keys, meaning in RUN_JSON.items()]
+    told = RUN_JSON | RUN_JSON_OF_RAILS
+    rows = [f"| {', '.join(f'`{key}`' for key in keys.split(', '))} | {meaning} |" for keys, meaning in told.items()]
     return "\n".join(["## run.json\n\n| key | holds |\n|---|---|", *rows, ""])
 
 
@@ -260,6 +282,33 @@ def _verdicts(verdicts: list[dict[str, Any]]) -> Iterator[str]:
     for each in verdicts:
         limit = f"`{each['limit']}`, {each['limit_value']:g} {each['unit']}"
         yield f"| {each['name']} | {each['unit']} | {limit} | {each['status']}: {each['source']} |"
+
+
+def _verdicts_of_rails() -> Iterator[str]:
+    limits = shipped_limits()
+    for touch in touch_limits(limits, "dc3000", 1.0):
+        if touch.judged:
+            name, known = touch.limit.name, f"{touch.limit.status}: {touch.limit.source}"
+            title = f"longest spell of the rail potential above {touch.voltage_v:g} V"
+            yield f"| {title} | s | `{name}`, {touch.may_last_s:g} s | {known} |"
+    told = {
+        "stray_current": "mean stray current",
+        "stray_shift_open": "mean rail potential, leakage up to that of an open formation",
+        "stray_shift_closed": "mean rail potential, leakage up to that of a closed formation",
+        "stray_leakage_closed": "leakage conductance, where it is higher",
+    }
+    named = common_limits(limits, "dc3000", "stray_")
+    for name, title in told.items():
+        limit = named[name]
+        yield f"| {title} (a day) | {limit.unit} | `{name}`, {limit.value:g} {limit.unit} | {limit.status}: {limit.source} |"
+
+
+def _figures_of_rails() -> Iterator[str]:
+    for title, figures in (("rails", rails.FIGURES), ("earthing, voltage-limiting device", rails.DEVICE_FIGURES)):
+        rows = [f"| `{name}` | {unit_of(name)} | {meaning} |" for name, meaning in figures.items()]
+        if figures is rails.FIGURES:
+            rows.append(f"| `longest_spell_above_LIMIT_s` | s | {rails.SPELL_FIGURE}; a point in it becomes `_` |")
+        yield "\n".join([f"| {title} | unit | definition |", "|---|---|---|", *rows, ""])
 
 
 def _figures(figures: list[dict[str, Any]]) -> Iterator[str]:

@@ -64,7 +64,13 @@ def test_si_becomes_the_units_of_the_table(rows):
     }
     for column, field in kilo.items():
         assert [first[column], second[column]] == (rows[field] / 1000.0).tolist(), column
-    assert len(first) == len(TABLES["trains"]) == len(kilo) + 11
+    assert len(first) == len(TABLES["trains"]) == len(kilo) + 12
+
+
+def test_the_rail_potential_is_empty_where_no_earth_is_defined(rows):
+    place = (([0, 0], ["7"]), ([1, 0], ["1", "2"]), np.array([1.5, 1.25]))
+    for given, expected in ((None, [None, None]), (np.array([4.5, np.nan]), [4.5, None])):
+        assert [row["rail_potential_v"] for row in trains_table(rows, *place, given).to_pylist()] == expected
 
 
 def test_every_code_has_its_name_in_the_contract(rows):

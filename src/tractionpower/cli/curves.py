@@ -37,14 +37,14 @@ def curves(
     from tractionpower.errors import OutputError, UsageError
     from tractionpower.io.limits_files import shipped_limits
     from tractionpower.io.rolling_stock import load_train
-    from tractionpower.model.limits import system_voltages
+    from tractionpower.model.limits import known_systems, system_voltages
     from tractionpower.movement.curves import drive_curves
     from tractionpower.reporting.curve_figures import curves_figure, has_drive, resistance_figure, write_curves_csv
     from tractionpower.reporting.style import png_names, save
 
     limits = shipped_limits()
-    if system not in {limit.system for limit in limits}:
-        raise UsageError(f"no system {system!r}; known: {', '.join(sorted({limit.system for limit in limits}))}")
+    if system not in known_systems(limits):
+        raise UsageError(f"no system {system!r}; known: {', '.join(known_systems(limits))}")
     for value in voltage or []:
         if not (math.isfinite(value) and 1.0 <= value <= 100_000.0):
             raise UsageError(f"--voltage {value:g}: allowed are 1 to 100000 V")

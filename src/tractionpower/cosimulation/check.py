@@ -10,6 +10,7 @@ from tractionpower.model.base import format_time
 from tractionpower.model.scenario import Clock, Scenario
 from tractionpower.movement.checks import check_movement
 from tractionpower.results.columns import TABLES
+from tractionpower.results.touch import check_touch
 from tractionpower.supply.checks import check_supply
 from tractionpower.supply.conductor_checks import check_conductors
 
@@ -23,6 +24,7 @@ def check_scenario(scenario: Scenario) -> list[Problem]:
         *check_movement(scenario),
         *_check_clock(scenario),
         *_check_output(scenario),
+        *check_touch(scenario.limits, scenario.supply.system),
         *_check_events(scenario),
     ]
 

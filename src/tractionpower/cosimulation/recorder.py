@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from tractionpower.cosimulation.events import EventLog
 from tractionpower.cosimulation.lumping import WorstStep
+from tractionpower.cosimulation.places import Placed
+from tractionpower.cosimulation.rail_recorder import RailRecorder
 from tractionpower.cosimulation.tables import CompiledScenario
 from tractionpower.cosimulation.train_recorder import TrainRecorder
 from tractionpower.kernels.block_tables import Buffers, State, take_rows
@@ -44,6 +46,7 @@ class Recorder:
         self.scenario, self.supply, self.writer = scenario, supply, writer
         self.trains = TrainRecorder(scenario, compiled, state)
         self.worst_step = WorstStep(scenario, self.trains.names, self.trains.places.tracks)
+        self.rails = RailRecorder(scenario, supply, tuple(self.trains.names), self.trains.places.tracks)
         clock = scenario.clock
         self.step_s = clock.step_s
         self.every = 1 if scenario.output.every_s is None else round(scenario.output.every_s / clock.step_s)
@@ -75,8 +78,11 @@ class Recorder:
         self._note(time_s, taken)
         placed = self.trains.add(taken.trains)
         self.worst_step.add(taken, placed, supply)
+        self.rails.add_trains(*self._counted(taken.trains, placed))
         written = number % self.every == 0
         self._write(time_s[written], take_rows(taken, written))
+        if "rails" in self.wanted:
+            self.rails.write(number, time_s, taken, self.writer.append)
         if "trains" in self.wanted and len(taken.trains):
             kept = np.repeat(written, taken.steps["trains"])
             self._write_trains(taken.trains[kept], placed.track[kept], placed.km[kept])
@@ -102,6 +108,14 @@ class Recorder:
         self.load_v.add(t, np.where(fed, rows.load_v, np.nan))
         self.load_w.add(t, rows.load_v * rows.load_a)
         self.section_v.add(t, rows.section_v)
+        self.rails.add(t, rows)
+
+    def _counted(self, rows: NDArray[np.void], placed: Placed) -> tuple[NDArray[np.void], Placed]:
+        """Return the rows of trains that count in key figures, with their places."""
+        counted = rows["time_s"] >= self.figures_from_s - 1e-9
+        if counted.all():
+            return rows, placed
+        return rows[counted], Placed(placed.track[counted], placed.km[counted], placed.sign[counted])
 
     def _write(self, time_s: Array, rows: Buffers) -> None:
         supply, append = self.supply, self.writer.append
@@ -123,6 +137,8 @@ class Recorder:
             append("switches", switches_table(time_s, [(link.id, link.closed) for link in links], rows.link_a[:, self.switches]))
         if "loads" in self.wanted and supply.loads:
             append("loads", loads_table(time_s, [load.id for load in supply.loads], rows.load_v, rows.load_a))
+        if "earthing" in self.wanted:
+            self.rails.write_devices(time_s, rows, append)
 
     def _no_load_v(self) -> Array:
         """Return E of the substations that feed in the present states [V], NaN for others."""
@@ -135,7 +151,8 @@ class Recorder:
 
     def _write_trains(self, rows: NDArray[np.void], track: NDArray[np.int64], km: Array) -> None:
         trains = self.trains
-        table = trains_table(rows, (rows["train"], trains.names), (track, trains.places.tracks), km)
+        rail_v = rows["rail_v"] if self.rails.exists else None
+        table = trains_table(rows, (rows["train"], trains.names), (track, trains.places.tracks), km, rail_v)
         self.writer.append("trains", table)
 
     def close(self, switched: Sequence[dict[str, Any]] = ()) -> None:
@@ -145,6 +162,8 @@ class Recorder:
             self.writer.append("calls", calls_table(calls))
         if "profile" in self.wanted:
             self.writer.append("profile", make_table("profile", self._profile()))
+        if "rail_profile" in self.wanted and self.rails.exists:
+            self.writer.append("rail_profile", self.rails.profile())
         if "events" in self.wanted:
             self.events.add_rows(switched)
             self.events.add_rows(self.trains.events.rows)
@@ -196,6 +215,7 @@ class Recorder:
             "trains": self.trains.status(self.now_s),
             "lumping": self.worst_step.compare(),
             "notes": list(self._notes()),
+            **self.rails.summary(),
         }
 
     def _notes(self) -> Iterator[str]:
@@ -238,7 +258,7 @@ class Recorder:
     def _verdicts(self) -> list[dict[str, Any]]:
         if not self.section_v.count or not np.isfinite(self._lowest()[0]):
             return []
-        return list(self._judge())
+        return [*self._judge(), *self.rails.verdicts()]
 
     def _judge(self) -> Iterator[dict[str, Any]]:
         voltages = self.supply.voltages
@@ -302,6 +322,7 @@ class Recorder:
             *window_figures(substations, self.windows),
             *load_figures([load.id for load in self.supply.loads], self.load_w, self.step_s),
             *self.trains.figures(self.now_s),
+            *self.rails.figures(),
             *ledger_figures(self.counted),
         ]
         return [figure.as_dict() for figure in figures]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Literal
 
 from pydantic import Field
@@ -10,6 +10,9 @@ from pydantic import Field
 from tractionpower.model.base import Declaration, Identifier, Real, Text
 
 Status = Literal["verified", "secondary", "recalled", "user"]
+
+ALL_SYSTEMS = "dc"
+"""System of the rows that hold for every DC system that has none of its own: touch voltages, stray currents."""
 
 VOLTAGE_NAMES = ("u_min2", "u_min1", "u_n", "u_max1", "u_max2")
 
@@ -50,6 +53,18 @@ def overlay(base: Sequence[Limit], rows: Sequence[Limit]) -> tuple[Limit, ...]:
 def find_limit(limits: Sequence[Limit], system: str, name: str) -> Limit | None:
     """Return the row of `limits` for a system and a name, or None."""
     return next((limit for limit in limits if limit.system == system and limit.name == name), None)
+
+
+def known_systems(limits: Iterable[Limit]) -> list[str]:
+    """Return the supply systems that have rows of their own, sorted."""
+    return sorted({limit.system for limit in limits} - {ALL_SYSTEMS})
+
+
+def common_limits(limits: Iterable[Limit], system: str, prefix: str) -> dict[str, Limit]:
+    """Return the limits whose names begin with `prefix`, by name: those of all DC systems, and over them those of `system`."""
+    named = [limit for limit in limits if limit.name.startswith(prefix)]
+    found = {limit.name: limit for limit in named if limit.system == ALL_SYSTEMS}
+    return found | {limit.name: limit for limit in named if limit.system == system}
 
 
 def system_voltages(limits: Sequence[Limit], system: str) -> SystemVoltages:

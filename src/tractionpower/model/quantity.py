@@ -30,6 +30,7 @@ UNITS: dict[str, str] = {
     "kmh": "km/h",
     "mps2": "m/s²",
     "kwh": "kWh",
+    "ah": "Ah",
     "kn": "kN",
     "ohm": "Ω",
     "km": "km",

@@ -44,7 +44,10 @@ class Output(Declaration):
     every_s: Real | None = field("every_s", "Interval of the rows; left out: every step.", above=0, default=None)
     tables: tuple[Text, ...] | None = Field(default=None, description="Tables to write; left out: all.")
     rails_every_s: Real = field(
-        "rails_every_s", "Interval of the rows of table rails, whose places are many.", above=0, default=60.0
+        "rails_every_s",
+        "Interval of the rows of table rails, whose places are many; to the nearest whole number of steps.",
+        above=0,
+        default=60.0,
     )
 
 

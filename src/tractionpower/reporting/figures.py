@@ -9,6 +9,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.rail_figures import rail_potential_along_line, rail_potential_over_time
 from tractionpower.reporting.run_data import RunData
 from tractionpower.reporting.run_graph import run_graphs
 from tractionpower.reporting.style import png_names, save
@@ -23,6 +24,8 @@ SINGLE = {
     "substation_currents": substation_currents,
     "substation_loads": substation_loads,
     "load_duration": load_duration,
+    "rail_potential": rail_potential_along_line,
+    "rail_potential_time": rail_potential_over_time,
 }
 """Figures of which a run has one, by name; each is left out where its table is missing."""
 

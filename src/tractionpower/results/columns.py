@@ -53,6 +53,7 @@ TABLES: dict[str, tuple[Column, ...]] = {
         _column("drive_loss_kw", "Loss between pantograph and wheel, without starting and braking resistors."),
         _column("wheel_power_kw", "Tractive power at the wheel."),
         _column("returned_kw", "Power fed back into the line."),
+        _column("rail_potential_v", "Potential of the rails under the train against remote earth; empty where none is defined."),
     ),
     "calls": (
         _column("train", "Identifier of the train's run.", "text"),
@@ -108,6 +109,33 @@ TABLES: dict[str, tuple[Column, ...]] = {
         _column("highest_voltage_v", "Highest voltage."),
         _column("count", "Number of steps, or of steps of trains.", "i4"),
         _column("where", "cross_section: a fixed place, in every step; pantograph: trains within 0.25 km of it.", "text"),
+    ),
+    "rails": (
+        TIME,
+        _column("track", "Tracks of the return conductor, several by blanks.", "text"),
+        _column("km", "Place along the line.", "f8"),
+        _column("potential_v", "Mean potential of the rails against remote earth in the one step that begins then."),
+        _column("leakage_a_per_km", "Current from the rails into earth by leakage, per kilometre; negative enters the rails."),
+    ),
+    "rail_profile": (
+        _column("track", "Tracks of the return conductor, several by blanks.", "text"),
+        _column("km", "Place along the line.", "f8"),
+        _column("lowest_potential_v", "Lowest potential of the rails against remote earth."),
+        _column("mean_potential_v", "Mean potential over the run."),
+        _column("highest_potential_v", "Highest potential."),
+        _column("mean_leakage_a_per_km", "Mean current from the rails into earth by leakage; negative enters the rails."),
+        _column("mean_leaving_a_per_km", "The same, steps in which it enters the rails counted as zero."),
+        _column(
+            "longest_above_limit_s", "Longest unbroken time with a potential, of either sign, above the permanent touch voltage."
+        ),
+        _column("leakage_s_per_km", "Leakage conductance of the return conductor."),
+        _column("length_km", "Length that the place stands for: sums over places give totals."),
+    ),
+    "earthing": (
+        TIME,
+        _column("device", "Identifier of the earthing or voltage-limiting device.", "text"),
+        _column("potential_v", "Mean potential there, of rails or busbar, against remote earth; empty where not recorded."),
+        _column("current_a", "Current into earth; negative comes out of it."),
     ),
     "events": (
         TIME,

@@ -77,7 +77,7 @@ class CallRow:
         return self.actual_s - self.planned_s
 
 
-def trains_table(rows: NDArray[np.void], train: Coded, track: Coded, km: Array) -> pa.Table:
+def trains_table(rows: NDArray[np.void], train: Coded, track: Coded, km: Array, rail_v: Array | None = None) -> pa.Table:
     """Return the rows of table ``trains``.
 
     Parameters
@@ -88,6 +88,8 @@ def trains_table(rows: NDArray[np.void], train: Coded, track: Coded, km: Array) 
         Train and track of each row, as (codes, names).
     km
         Place of the front [km].
+    rail_v
+        Potential of the rails under the train [V]; None where nothing defines remote earth.
     """
     columns: dict[str, Any] = {name: rows[field] for name, field in _PLAIN.items()}
     columns |= {name: rows[field] / 1000.0 for name, field in _KILO.items()}
@@ -98,6 +100,7 @@ def trains_table(rows: NDArray[np.void], train: Coded, track: Coded, km: Array) 
         "speed_kmh": rows["v_mps"] * KMH_PER_MPS,
         "phase": (rows["phase"], PHASES),
         "limited_by": (rows["limited_by"], LIMITED_BY),
+        "rail_potential_v": np.full(len(rows), np.nan) if rail_v is None else rail_v,
     }
     return make_table("trains", columns)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tractionpower.errors import Problem
-from tractionpower.model.limits import VOLTAGE_NAMES, Limit, find_limit
+from tractionpower.model.limits import VOLTAGE_NAMES, Limit, find_limit, known_systems
 from tractionpower.model.supply import SectionCabin, Substation, Supply
 from tractionpower.model.switchgear import Feeder, Protection
 from tractionpower.supply.reach import station_path
@@ -27,7 +27,7 @@ def check_resistances(supply: Supply) -> list[Problem]:
 def check_voltages(supply: Supply, limits: tuple[Limit, ...]) -> list[Problem]:
     """Return voltages that the limits of the system do not allow, and limits that are missing."""
     system = supply.system
-    known = sorted({limit.system for limit in limits})
+    known = known_systems(limits)
     if system not in known:
         remedy = "choose one of them, or give the limits of the system in a file of your own"
         allowed = ", ".join(known) or "none, the limits table is empty"

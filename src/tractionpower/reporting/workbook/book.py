@@ -19,6 +19,7 @@ from tractionpower.reporting.workbook import (
     figures,
     inputs,
     limits,
+    return_circuit,
     substations,
     trains,
 )
@@ -38,7 +39,7 @@ def build(results: Results, scenario: Scenario) -> Any:
     blank = workbook.active  # styles are made on it
     book = Book(workbook, Facts(results, scenario))
     front = book.page("Cover", shorten(book.facts.study, cover.TITLE_LENGTH))
-    for add in (limits.add, trains.add, calls.add, substations.add, energy.add, figures.add):
+    for add in (limits.add, trains.add, calls.add, substations.add, return_circuit.add, energy.add, figures.add):
         add(book)
     charted = book.page("Charts", "Charts")
     drawn = extracts.add(book)

@@ -37,6 +37,8 @@ def limit_in_words(name: str) -> str:
     >>> limit_in_words("u_min2")
     'U_min2'
     """
+    if name.startswith("touch_"):
+        return f"time above {name}"
     return f"U_{name[2:]}" if name.startswith("u_") else name
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from tractionpower.model.base import Declaration, format_time
+from tractionpower.model.limits import ALL_SYSTEMS
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import Supply
@@ -201,6 +202,7 @@ def _limits(book: Book) -> None:
     page = book.page("Inputs limits", f"Inputs as used: limits of system {scenario.supply.system}")
     columns = [Column("name"), Column("value", "general"), Column("unit"), Column("meaning", widest=50)]
     columns += [Column("status", widest=40), Column("source", widest=80)]
-    used = [limit for limit in scenario.limits if limit.system == scenario.supply.system]
+    systems = {scenario.supply.system, *([ALL_SYSTEMS] if book.facts.run.get("return_circuit") else [])}
+    used = [limit for limit in scenario.limits if limit.system in systems]
     rows = [(li.name, li.value, li.unit, li.meaning, KNOWN_AS.get(li.status, li.status), li.source) for li in used]
     page.table(columns, rows, frozen=True)
