@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from dense_reference import DenseNetwork
+from dense_network import DenseNetwork
+from dense_places import Places
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from random_networks import Draw, tame_dead_loads
@@ -11,7 +12,7 @@ from solved import LIMITS, Solved, seed_network, single_line, tap
 from tractionpower.kernels.network import CONVERGED, NOT_SERVABLE, TOLERANCE_A
 from tractionpower.kernels.spans import place_ports
 from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S
-from tractionpower.model.line import Line, Track
+from tractionpower.model.line import Line
 from tractionpower.model.supply import Supply
 
 SEEDS = st.integers(0, 2**63 - 1)
@@ -82,21 +83,30 @@ def test_no_voltage_above_the_highest_no_load_voltage_when_nothing_feeds_back(se
 # -- what must not matter
 
 
+NAMED = ("substations", "section_cabins", "section_points", "loads", "switches", "earthing", "voltage_limiting_devices")
+
+
 def renamed(supply, seed):
     """Return the supply with other identifiers and every list in another order, and the new name of every old one."""
     rng = np.random.default_rng(seed)
     names = {}
-    changed = {}
-    for kind in ("substations", "section_cabins", "section_points", "loads"):
+    for kind in NAMED:
         rows = getattr(supply, kind)
-        new = [f"{kind}-{k}" for k in rng.permutation(len(rows))]
-        names |= {row.id: name for row, name in zip(rows, new, strict=True)}
-        rows = [row.model_copy(update={"id": name}) for row, name in zip(rows, new, strict=True)]
-        changed[kind] = tuple(rows[k] for k in rng.permutation(len(rows)))
-    for kind in ("contact_lines", "return_circuit"):
-        rows = getattr(supply, kind)
-        changed[kind] = tuple(rows[k] for k in rng.permutation(len(rows)))
-    return supply.model_copy(update=changed), names
+        names |= {row.id: f"{kind}-{k}" for row, k in zip(rows, rng.permutation(len(rows)), strict=True)}
+    data = supply.model_dump(by_alias=True)
+    for kind in NAMED:
+        for row in data[kind]:
+            row["id"] = names[row["id"]]
+    for row in data["feeders"]:
+        row["at"] = names[row["at"]]
+    for row in data["earthing"]:
+        row["substation"] = names.get(row["substation"])
+    for switch in data["switches"]:
+        for end in ("from", "to"):
+            switch[end]["busbar"] = names.get(switch[end]["busbar"])
+    for kind in (*NAMED, "feeders", "bonds", "contact_lines", "return_circuit"):
+        data[kind] = [data[kind][k] for k in rng.permutation(len(data[kind]))]
+    return Supply.model_validate(data), names
 
 
 @law(100)
@@ -110,32 +120,48 @@ def test_neither_order_nor_names_matter(seed):
     assert [second.u[names[name]] for name in busy] == pytest.approx([first.u[name] for name in busy], rel=1e-9)
 
 
+SIDES = {"low_km": "high_km", "high_km": "low_km"}
+
+
+def mirrored(supply, line):
+    """Return supply and line seen from the other side."""
+    data, tracks = supply.model_dump(by_alias=True), line.model_dump(by_alias=True)
+    switched = [switch[end] for switch in data["switches"] for end in ("from", "to")]
+    joined = [connection[end] for connection in tracks["connections"] for end in ("from", "to")]
+    for row in [row for kind in (*NAMED, "feeders") for row in data[kind]] + switched + joined:
+        if row.get("km") is not None:
+            row["km"] = -row["km"]
+    for row in (*data["feeders"], *switched):
+        row["side"] = SIDES.get(row["side"], row["side"])
+    for row in data["bonds"]:  # counted from the last one, and the end a little behind the first one
+        count = int((row["to_km"] - row["from_km"] + 0.001) / row["every_km"])
+        row["from_km"], row["to_km"] = -row["from_km"] - count * row["every_km"], 0.5 * row["every_km"] - row["from_km"]
+    for row in (*data["contact_lines"], *data["return_circuit"], *tracks["tracks"]):
+        row["from_km"], row["to_km"] = -row["to_km"], -row["from_km"]
+    for row in tracks["chainage_breaks"]:
+        row["at_km"], row["continues_as_km"] = -row["continues_as_km"], -row["at_km"]
+    return Supply.model_validate(data), Line.model_validate(tracks)
+
+
 @law(100)
 @given(seed=SEEDS)
 def test_the_mirrored_line_gives_the_mirrored_answer(seed):
     supply, line = draw(seed)
-    supply = supply.model_copy(update={"loads": tuple(apart(supply))})
+    if any(item.continues_as_km < item.at_km for item in line.chainage_breaks):
+        return  # of doubled kilometres the first ones are meant, which are the last ones of the mirrored line
+    supply = supply.model_copy(update={"loads": tuple(apart(supply, line))})
     first = Solved(supply, line)
-    data = supply.model_dump()
-    for kind in ("substations", "section_cabins", "section_points", "loads"):
-        for row in data[kind]:
-            row["km"] = -row["km"]
-    for row in [*data["contact_lines"], *data["return_circuit"]]:
-        row["from_km"], row["to_km"] = -row["to_km"], -row["from_km"]
-    mirrored = Line(tracks=tuple(Track(id=t.id, from_km=-t.to_km, to_km=-t.from_km) for t in line.tracks))
-    second = Solved(Supply.model_validate(data), mirrored)
+    second = Solved(*mirrored(supply, line))
     busy = busy_names(first)
     assert [second.u[name] for name in busy] == pytest.approx([first.u[name] for name in busy], rel=1e-9)
 
 
-def apart(supply):
+def apart(supply, line):
     """Yield the loads that stand at least 2 m from each other and from all fixed places, where sides or nodes are chosen."""
-    fixed = {d.km for kind in ("substations", "section_cabins", "section_points") for d in getattr(supply, kind)}
-    fixed |= {km for row in (*supply.contact_lines, *supply.return_circuit) for km in (row.from_km, row.to_km)}
-    taken = list(fixed)
+    taken = {km for cuts in Places(supply, line).cuts.values() for km in cuts}
     for load in supply.loads:
         if all(abs(load.km - km) >= 0.002 for km in taken):
-            taken.append(load.km)
+            taken.add(load.km)
             yield load
 
 
@@ -143,13 +169,16 @@ def apart(supply):
 @given(seed=SEEDS)
 def test_halving_the_rows_of_conductors_changes_nothing(seed):
     supply, line = draw(seed)
-    supply = supply.model_copy(update={"loads": tuple(apart(supply))})
+    supply = supply.model_copy(update={"loads": tuple(apart(supply, line))})
     rng = np.random.default_rng(seed)
+    taken = {km for cuts in Places(supply, line).cuts.values() for km in cuts} | {load.km for load in supply.loads}
 
     def halves(row):
         km = rng.uniform(row.from_km + 0.005, row.to_km - 0.005)
-        if any(abs(km - load.km) < 0.002 for load in supply.loads):
+        left_out = any(jump.at_km < km < jump.continues_as_km + 0.002 for jump in line.chainage_breaks)
+        if left_out or any(abs(km - other) < 0.002 for other in taken):
             return [row]
+        taken.add(km)
         return [row.model_copy(update={"to_km": km}), row.model_copy(update={"from_km": km})]
 
     halved = {

@@ -1,23 +1,24 @@
 """Random supply systems, all of them valid, for the laws."""
 
-from itertools import pairwise
-
 import numpy as np
+from dense_network import DenseNetwork
+from random_lines import RandomLine
+from random_switchgear import RandomSwitchgear
 
-from tractionpower.model.line import Line, Track
-from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, SectionPoint, Substation, Supply
+from tractionpower.io.limits_files import shipped_limits
+from tractionpower.model.line import Line
+from tractionpower.model.supply import Load, SectionCabin, SectionPoint, Substation, Supply
 
 U_N = {"dc3000": 3000.0, "dc1500": 1500.0}
-GRID = 40
-"""Places of fixed devices per line."""
+LIMITS = shipped_limits()
 
 
 class Draw:
-    """One random line with its supply, a function of the seed alone.
+    """One random network with its supply, a function of the seed alone.
 
-    Fixed devices stand on a grid, so that they coincide or lie well apart; loads stand anywhere, at the same place, less
-    than 1 m from each other or from a device. `live` tells which loads a network reaches; the others only take, within
-    limits, since what feeds back into a dead part has no place to go.
+    A trunk of one to four tracks, in some draws with branches of their own kilometres: islands, trees, rings. Devices that
+    cut conductors stand on a grid or at free places between, so that they coincide or lie well apart; loads stand anywhere,
+    at the same place, less than 1 m from each other or from a device.
     """
 
     def __init__(self, *seed):
@@ -26,108 +27,106 @@ class Draw:
         self.system = "dc1500" if rng.random() < 0.15 else "dc3000"
         self.u_n = U_N[self.system]
         self.scale = self.u_n / 3000.0
-        start = float(rng.choice([0.0, -3.5, 117.25]))
-        length = float(rng.uniform(4.0, 60.0) * self.scale)
-        self.grid = [round(start + length * k / GRID, 6) for k in range(GRID + 1)]
-        self.tracks = [str(k + 1) for k in range(rng.integers(1, 5))]
-        self.ends = dict.fromkeys(self.tracks, (self.grid[0], self.grid[-1]))
-        if len(self.tracks) > 1 and rng.random() < 0.25:
-            low, high = sorted(rng.choice(GRID + 1, 2, replace=False))
-            self.ends[self.tracks[-1]] = self.grid[low], self.grid[high]
-        self.line = Line(tracks=tuple(Track(id=t, from_km=a, to_km=b) for t, (a, b) in self.ends.items()))
-        self.contact = self._contact_lines()
-        self.returns = self._returns()
+        leaky, branched = rng.random() < 0.5, rng.random() < 0.4
+        self.parts = [RandomLine(rng, 0, self.scale, leaky=leaky)]
+        if branched:
+            self.parts += [RandomLine(rng, k + 1, self.scale, leaky=leaky) for k in range(rng.integers(1, 4))]
+        self.breaks = tuple(item for part in self.parts for item in part.breaks)
+        self.connections = self._connections()
+        tracks = tuple(track for part in self.parts for track in part.line_tracks)
+        self.line = Line(tracks=tracks, connections=self.connections, chainage_breaks=self.breaks)
+
+    def _connections(self):
+        """Join each branch with the parts before it at no, one or two places; some tracks with a neighbour."""
+        rng, found = self.rng, []
+        for number, part in enumerate(self.parts):
+            joints = int(rng.choice(3, p=[0.2, 0.5, 0.3])) if number else 0
+            for k in range(joints):
+                other = self.parts[rng.integers(number)]
+                own, end = str(rng.choice(part.tracks)), (part.grid[0], part.grid[-1])[k]
+                here = (own, end) if rng.random() < 0.7 and part.exists(own, end) else part.free_place(own)
+                found.append((here, other.free_place()))
+            if len(part.tracks) > 1 and rng.random() < 0.1:
+                track, km = part.free_place()
+                found += [((track, km), (t, km)) for t in part.tracks_at(km) if t != track][:1]
+        return tuple(
+            {"from": {"track": a, "km": x}, "to": {"track": b, "km": y}}
+            for (a, x), (b, y) in found
+        )  # fmt: skip
 
     def supply(self, loads=()):
-        rng = self.rng
-        substations = tuple(self._substation(k) for k in range(rng.integers(1, 7)))
-        cabins = tuple(self._cabin(k) for k in range(rng.integers(0, 5)))
-        substations, cabins = without_loops(substations, cabins)
-        return Supply(
+        """Return the supply; it is drawn anew at every call."""
+        rng, parts, self.taken = self.rng, self.parts, set()
+        counts = [(rng.integers(1, 7), rng.integers(0, 5), rng.integers(0, 4))]
+        counts += [(rng.integers(0, 3), rng.integers(0, 2), rng.integers(0, 2)) for _ in parts[1:]]
+        where = [
+            [part for part, count in zip(parts, row, strict=True) for _ in range(count)] for row in zip(*counts, strict=True)
+        ]
+        stations = tuple(self._substation(k, part) for k, part in enumerate(where[0]))
+        cabins = tuple(self._cabin(k, part) for k, part in enumerate(where[1]))
+        points = tuple(point for k, part in enumerate(where[2]) if (point := self._point(k, part)))
+        gear = RandomSwitchgear(rng, parts, self.scale, stations, cabins, points)
+        supply = Supply(
             system=self.system,
-            substations=substations,
+            substations=stations,
             section_cabins=cabins,
-            section_points=tuple(point for k in range(rng.integers(0, 4)) if (point := self._point(k))),
-            contact_lines=self.contact,
-            return_circuit=self.returns,
+            section_points=points,
+            contact_lines=tuple(row for part in parts for row in part.contact),
+            return_circuit=tuple(row for part in parts for row in part.returns),
+            bonds=tuple(row for part in parts for row in part.bonds),
+            feeders=gear.feeders,
+            switches=gear.switches,
+            earthing=gear.earthing,
+            voltage_limiting_devices=gear.limiters,
             loads=tuple(loads),
         )
-
-    # -- conductors
-
-    def _parts(self, ends, breaks, more=()):
-        inside = [km for km in self.grid if ends[0] < km < ends[1]]
-        count = min(self.rng.integers(0, breaks + 1), len(inside))
-        chosen = self.rng.choice(inside, count, replace=False).tolist() if count else []
-        return list(pairwise(sorted({*ends, *chosen, *more})))
-
-    def _contact_lines(self):
-        rng, rows = self.rng, []
-        if rng.random() < 0.3:
-            for low, high in self._parts((self.grid[0], self.grid[-1]), 2):
-                rows.append(ContactLine(from_km=low, to_km=high, resistance_ohm_per_km=rng.uniform(0.02, 0.1)))
-            if len({self.ends[track] for track in self.tracks}) == 1:
-                return tuple(rows)
-            rows = []
-        for track in self.tracks:
-            parts = self._parts(self.ends[track], 2)
-            kept = [part for part in parts if len(parts) == 1 or rng.random() > 0.08] or parts
-            rows += [
-                ContactLine(tracks=(track,), from_km=low, to_km=high, resistance_ohm_per_km=rng.uniform(0.02, 0.1))
-                for low, high in kept
-            ]
-        return tuple(rows)
-
-    def _returns(self):
-        rng, rows = self.rng, []
-        for low, high in self._parts((self.grid[0], self.grid[-1]), 1, self.ends[self.tracks[-1]]):
-            kind = rng.choice(["common", "single", "mixed"])
-            labels = {"common": [0] * 4, "single": [0, 1, 2, 3], "mixed": rng.integers(0, 2, 4).tolist()}[kind]
-            for label in sorted(set(labels)):
-                members = [t for t, mine in zip(self.tracks, labels, strict=False) if mine == label]
-                members = [t for t in members if self.ends[t][0] <= low and high <= self.ends[t][1]]
-                if members:
-                    ohm = 0.0 if rng.random() < 0.15 else rng.uniform(0.003, 0.03)
-                    rows.append(ReturnCircuit(tracks=tuple(members), from_km=low, to_km=high, resistance_ohm_per_km=ohm))
-        return tuple(rows)
+        return without_short_loops(supply, self.line)
 
     # -- devices
-
-    def _some_tracks(self, km):
-        here = [t for t in self.tracks if self.ends[t][0] <= km <= self.ends[t][1]]
-        if self.rng.random() < 0.75:
-            return None
-        return tuple(sorted(self.rng.choice(here, self.rng.integers(1, len(here) + 1), replace=False).tolist()))
 
     def _some_ohm(self, high):
         return 0.0 if self.rng.random() < 0.5 else float(self.rng.uniform(0.001, high))
 
-    def _substation(self, k):
+    def _station_place(self, part):
+        """Return a place without a busbar: feeders of two at one place could close a loop of no resistance."""
+        km = part.grid_place()
+        while km in self.taken:
+            km = part.grid_place()
+        self.taken.add(km)
+        return km
+
+    def _substation(self, k, part):
         rng = self.rng
-        km = float(rng.choice(self.grid))
+        km = self._station_place(part)
         others = ["rectifiers_out", "bypassed", "open"]
+        ohm, units = float(rng.uniform(0.02, 0.3) * self.scale), int(rng.choice([1, 1, 2, 4]))
         return Substation(
             id=f"S{k}",
             km=km,
             no_load_voltage_v=float(rng.choice([1.2, rng.uniform(1.05, 1.25)])) * self.u_n,
-            internal_resistance_ohm=rng.uniform(0.02, 0.3) * self.scale,
+            internal_resistance_ohm=ohm,
+            units=units,
+            units_in_service=None if k == 0 or rng.random() < 0.6 else int(rng.integers(0, units + 1)),
+            grid_resistance_ohm=ohm * float(rng.uniform(0.0, 0.5)) if rng.random() < 0.3 else 0.0,
             conducts="both" if rng.random() < 0.25 else "forward",
             state="in_service" if k == 0 or rng.random() < 0.7 else str(rng.choice(others)),
             feeder_resistance_ohm=self._some_ohm(0.05),
             return_resistance_ohm=self._some_ohm(0.03),
             grid_voltage_pu=1.0 if rng.random() < 0.8 else rng.uniform(0.95, 1.03),
-            tracks=self._some_tracks(km),
+            tracks=part.some_tracks(km),
         )
 
-    def _cabin(self, k):
-        km = float(self.rng.choice(self.grid))
+    def _cabin(self, k, part):
+        km = self._station_place(part)
         state = str(self.rng.choice(["closed", "closed", "bypassed", "open"]))
-        return SectionCabin(id=f"C{k}", km=km, state=state, tracks=self._some_tracks(km))
+        return SectionCabin(
+            id=f"C{k}", km=km, state=state, tracks=part.some_tracks(km), feeder_resistance_ohm=self._some_ohm(0.02)
+        )
 
-    def _point(self, k):
-        track = str(self.rng.choice(self.tracks))
-        km = float(self.rng.choice(self.grid))
-        if not self.ends[track][0] <= km <= self.ends[track][1]:
+    def _point(self, k, part):
+        track = str(self.rng.choice(part.tracks))
+        km = part.grid_place()
+        if not part.exists(track, km):
             return None
         return SectionPoint(id=f"P{k}", track=track, km=km, state=str(self.rng.choice(["open", "closed"])))
 
@@ -141,10 +140,11 @@ class Draw:
         mode = rng.choice(["taking", "feeding", "mixed"])
         free = rng.random() < 0.2
         shares = rng.dirichlet(np.ones(count)) if count else ()
-        places, loads = [], []
+        places, loads = {part.number: [] for part in self.parts}, []
         for k, share in enumerate(shares):
-            track, km = self._place(places)
-            places.append(km)
+            part = self.parts[0 if rng.random() < 0.6 else rng.integers(len(self.parts))]
+            track, km = self._place(part, places[part.number])
+            places[part.number].append(km)
             sign = {"taking": 1.0, "feeding": -1.0, "mixed": float(rng.choice([-1.0, 1.0]))}[mode]
             power = sign * total * float(share)
             kind = {"power_kw": power} if rng.random() < 0.8 else {"current_a": power * 1e3 / self.u_n}
@@ -155,13 +155,14 @@ class Draw:
             loads.append(Load(id=f"L{k:02}", track=track, km=km, limits=limits, fold_back_from_v=fold, **kind))
         return tuple(loads)
 
-    def _place(self, places):
+    def _place(self, part, places):
         rng = self.rng
-        row = self.contact[rng.integers(len(self.contact))]
-        track = str(rng.choice(row.tracks or self.tracks))
+        row = part.contact[rng.integers(len(part.contact))]
+        track = str(rng.choice(row.tracks or part.tracks))
         low, high = row.from_km, row.to_km
         how = rng.random()
-        near = float(rng.choice([km for km in self.grid if low <= km <= high]))
+        fixed = [km for km in (*part.grid, *(km for _, km in part.used)) if low <= km <= high]
+        near = float(rng.choice(fixed))
         if how < 0.15 and places:
             near = float(rng.choice(places))
         elif how < 0.25 and places:
@@ -170,7 +171,27 @@ class Draw:
             near += rng.uniform(-0.0012, 0.0012)
         elif how > 0.4:
             near = rng.uniform(low, high)
-        return track, float(min(max(near, low), high))
+        near = float(min(max(near, low), high))
+        return track, near if part.is_place(near) else low
+
+
+def without_short_loops(supply, line):
+    """Return the supply with a resistance in every switch and bond that would close a loop of no resistance."""
+    rows = {"switches": [], "bonds": []}
+    for name, kept in rows.items():
+        for row in getattr(supply, name):
+            rest = supply.model_copy(update={"switches": (), "bonds": ()} | {key: tuple(done) for key, done in rows.items()})
+            loop = row.resistance_ohm == 0.0 and closes_short_loop(DenseNetwork(rest, line, LIMITS), name, row)
+            kept.append(row.model_copy(update={"resistance_ohm": 0.01}) if loop else row)
+    return supply.model_copy(update={name: tuple(kept) for name, kept in rows.items()})
+
+
+def closes_short_loop(network, name, row):
+    """Tell whether nodes that a switch or bonds would merge are one already."""
+    if name == "bonds":
+        return any(r[3] == 0.0 for r in network.places.rail_rows) or len(network.places.rail_rows) < 2
+    ends = [network.switch_node(end) for end in (row.from_, row.to)]
+    return None in ends or network.one.find(ends[0]) == network.one.find(ends[1])
 
 
 def without_loops(substations, cabins):
@@ -205,3 +226,14 @@ def tame_dead_loads(supply, live):
             change = {"limits": "range", "power_kw": kw and abs(kw), "current_a": ampere and abs(ampere)}
         loads.append(load.model_copy(update=change))
     return supply.model_copy(update={"loads": tuple(loads)})
+
+
+def draw_network(*seed):
+    """Return a supply with loads, its line and its dense network."""
+    draw = Draw(*seed)
+    supply = draw.supply(draw.loads())
+    network = DenseNetwork(supply, draw.line, LIMITS)
+    if not network.live.all():
+        supply = tame_dead_loads(supply, network.live)
+        network = DenseNetwork(supply, draw.line, LIMITS)
+    return supply, draw.line, network

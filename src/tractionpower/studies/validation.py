@@ -1,8 +1,9 @@
 """Reference cases: studies with expected figures, their tolerance and their source.
 
 A case is a folder with a study and a ``case.yaml`` that lists checks. A check may change inputs first, and names the
-figures that must come out by table, train or device, and column: ``loads.depot.voltage_v``, ``trains.ic.current_a``; those
-of theoretical journeys by train and figure: ``journeys.ic.running_time_s``, in both forms of the equations of motion.
+figures that must come out by table, train, device or place, and column: ``loads.depot.voltage_v``, ``trains.ic.current_a``,
+``feeders.A 1 high_km.current_a`` (substation, track, side; likewise ``cabins``), ``rails.1 12.5.potential_v`` (track, km);
+those of theoretical journeys by train and figure: ``journeys.ic.running_time_s``, in both forms of the equations of motion.
 """
 
 from __future__ import annotations
@@ -26,6 +27,18 @@ from tractionpower.studies.journeys import Form
 from tractionpower.studies.validation_journeys import PREFIX, journey_figures
 
 CASE_FILE = "case.yaml"
+
+FIGURE_KEYS = {
+    "trains": ("train",),
+    "substations": ("substation",),
+    "feeders": ("substation", "track", "side"),
+    "cabins": ("section_cabin", "track", "side"),
+    "switches": ("switch",),
+    "loads": ("load",),
+    "rails": ("track", "km"),
+    "events": ("kind",),
+}
+"""Tables whose first rows are figures, and the columns that name the subject: ``feeders.A 1 high_km.current_a``."""
 
 
 class Check(Declaration):
@@ -115,12 +128,14 @@ def _compute(scenario: Scenario) -> tuple[dict[str, float], str]:
     writer = MemoryWriter()
     outcome = Run(scenario, writer).execute()
     figures: dict[str, float] = {}
-    for table, key in (("trains", "train"), ("substations", "substation"), ("loads", "load"), ("events", "kind")):
-        rows: list[dict[str, Any]] = writer.tables()[table].to_pylist() if table in writer.tables() else []
+    tables = writer.tables()
+    for table, keys in FIGURE_KEYS.items():
+        rows: list[dict[str, Any]] = tables[table].to_pylist() if table in tables else []
         for row in rows:
+            subject = " ".join(f"{row[key]:g}" if isinstance(row[key], float) else row[key] for key in keys)
             for column, value in row.items():
-                if isinstance(value, float) and f"{table}.{row[key]}.{column}" not in figures:
-                    figures[f"{table}.{row[key]}.{column}"] = value
+                if isinstance(value, float) and f"{table}.{subject}.{column}" not in figures:
+                    figures[f"{table}.{subject}.{column}"] = value
     figures |= {f"energy.{name}": value for name, value in outcome.run["ledgers"]["electric"].items()}
     return figures, str(outcome.run["status"])
 
