@@ -11,6 +11,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from tractionpower.alignment.axis import TrackAxis
 from tractionpower.kernels.tables import SHARED_NODE_M
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.line import Line
@@ -39,15 +40,20 @@ class Bundle:
     tracks
         Identifiers, sorted.
     cuts
-        Kilometres of the cuts, rising.
+        Kilometres of the cuts, rising; of two kilometres at one place, beside a chainage break, the first.
+    pieces
+        From where to where each piece between two cuts runs [km].
     contacts
         For each piece between two cuts the resistance of the contact line of each track that has one [ohm/m].
     rails
         For each piece the return conductors.
     """
 
-    def __init__(self, tracks: Sequence[str], supply: Supply, line: Line, conductors: Sequence[Conductor]) -> None:
+    def __init__(
+        self, tracks: Sequence[str], supply: Supply, line: Line, axes: Mapping[str, TrackAxis], conductors: Sequence[Conductor]
+    ) -> None:
         self.tracks = tuple(tracks)
+        self._axes = axes
         self.ends = {track.id: (track.from_km, track.to_km) for track in line.tracks if track.id in tracks}
         self._contact_rows = [
             (row, track) for row in supply.contact_lines for track in self.tracks if row.tracks is None or track in row.tracks
@@ -59,6 +65,10 @@ class Bundle:
         ]
         self._conductors = conductors
         self.cuts: list[float] = []
+        self.pieces: list[tuple[float, float]] = []
+        self._kms: list[float] = []  # of all that makes cuts, with the cut of each
+        self._cut_of: list[int] = []
+        self._first_cut: list[int] = []  # where the kilometres of each cut begin in that list
         self.contacts: list[dict[str, float]] = []
         self.rails: list[list[Rails]] = []
 
@@ -72,11 +82,25 @@ class Bundle:
             low, high = min(self.ends[track][0] for track in tracks), max(self.ends[track][1] for track in tracks)
             every += [max(from_km, low), min(to_km, high)]
         for km in sorted(every):
-            if not self.cuts or km - self.cuts[-1] >= SHARED_KM:
-                self.cuts.append(km)
-        middles = [0.5 * (low + high) for low, high in zip(self.cuts, self.cuts[1:], strict=False)]
+            if not self._kms or self._is_beyond(self._kms[-1], km):
+                self._first_cut.append(len(self._kms))
+            self._kms.append(km)
+            self._cut_of.append(len(self._first_cut) - 1)
+        last = [*(n - 1 for n in self._first_cut[1:]), len(self._kms) - 1]
+        self.cuts = [self._kms[n] for n in self._first_cut]
+        self.pieces = [(self._kms[low], self._kms[high]) for low, high in zip(last, self._first_cut[1:], strict=False)]
+        middles = [0.5 * (low + high) for low, high in self.pieces]
         self.contacts = [self._contacts_over(km) for km in middles]
         self.rails = [self._rails_over(km) for km in middles]
+
+    def _is_beyond(self, before: float, km: float) -> bool:
+        """Tell whether a place is another one than that before it: kilometres that a chainage break leaves out have no length."""
+        ways = []
+        for track in self.tracks:
+            axis = self._axes[track]
+            first, second = (min(max(place, axis.from_km), axis.to_km) for place in (before, km))
+            ways.append(axis.metre(second) - axis.metre(first))
+        return max(ways) >= SHARED_NODE_M
 
     def _contacts_over(self, km: float) -> dict[str, float]:
         return {
@@ -100,8 +124,10 @@ class Bundle:
 
     def cut(self, km: float) -> int:
         """Return the number of the cut nearest to a kilometre."""
-        after = bisect_left(self.cuts, km)
-        return min((n for n in (after - 1, after) if 0 <= n < len(self.cuts)), key=lambda n: abs(self.cuts[n] - km))
+        kms = self._kms
+        after = bisect_left(kms, km)
+        nearest = min((n for n in (after - 1, after) if 0 <= n < len(kms)), key=lambda n: abs(kms[n] - km))
+        return self._cut_of[nearest]
 
     def sides(self, track: str, cut: int) -> list[str]:
         """Return on which sides of a cut the track has a contact line."""
@@ -118,7 +144,9 @@ class Bundle:
         return [rails for rails in beside if track in rails.tracks]
 
 
-def find_bundles(supply: Supply, line: Line, conductors: Sequence[Conductor]) -> list[Bundle]:
+def find_bundles(
+    supply: Supply, line: Line, axes: Mapping[str, TrackAxis], conductors: Sequence[Conductor]
+) -> list[Bundle]:
     """Return the bundles of a line in the order of their first tracks."""
     label: dict[str, str] = {track.id: track.id for track in line.tracks}
     for row in supply.return_circuit:
@@ -128,7 +156,7 @@ def find_bundles(supply: Supply, line: Line, conductors: Sequence[Conductor]) ->
     groups: Mapping[str, list[str]] = defaultdict(list)
     for track in sorted(label):
         groups[label[track]].append(track)
-    return [Bundle(tracks, supply, line, conductors) for tracks in groups.values()]
+    return [Bundle(tracks, supply, line, axes, conductors) for tracks in groups.values()]
 
 
 def return_tracks(row: ReturnCircuit, line: Line) -> set[str]:

@@ -161,8 +161,8 @@ class _Compiler:
         self.topology: Topology = build_topology(supply, line, conductors)
         self.substations = tuple(sorted(supply.substations, key=lambda substation: substation.id))
         self.loads = tuple(sorted(supply.loads, key=lambda load: load.id))
-        self.sources = [s for s in self.substations if s.feeds and s.id in self.topology.busbars]
         self.find = self.topology.find
+        self.sources = [s for s in self.substations if s.feeds and self._has_return(s)]
         self.probes = self._probes()
         self.nodes = number_nodes(self.topology, self.sources)
         self.structure = self.nodes.structure
@@ -221,6 +221,13 @@ class _Compiler:
         return sorted(
             (track, place) for track, place in beside if all(abs(km - place) >= SHARED_NODE_M / 1000.0 for km in kms[track])
         )
+
+    def _has_return(self, substation: Substation) -> bool:
+        """Tell whether the busbars are in the network and the rails can bring a current back."""
+        busbar, topology = self.topology.busbars.get(substation.id), self.topology
+        if busbar is None:
+            return False
+        return self._wired.find(busbar.negative) in self._wired_rails
 
     # -- nodes ---------------------------------------------------------------------------------------------------
 

@@ -163,8 +163,8 @@ class ContactGraph:
         rows = rows_by_side(self.site.supply.feeders)
         for station in self.site.stations:
             if station.state in TYING:
-                for track, place in self.site.fed[station.id].items():
-                    for side in self.site.line_sides(place):
+                for track, side in self.site.feeders(station):
+                        place = self.site.fed[station.id][track]
                         index = rows.get((station.id, track, side))
                         row = None if index is None else self.site.supply.feeders[index]
                         if row is None or row.state == "closed":

@@ -71,10 +71,16 @@ class Site:
         """Return the parts of the return circuit that the rails of a track belong to at a place, the low side first."""
         return _parts_at(self.returns[place[0]], place[1])
 
+    def feeders(self, station: Station) -> list[tuple[str, Side]]:
+        """Return track and side of the feeders of a station that feed something; to another line lead those that are named."""
+        own = tracks_at(self.axes, station.km, station.tracks)
+        named = {(row.track, row.side) for row in self.supply.feeders if row.at == station.id}
+        fed = ((track, side) for track, place in self.fed[station.id].items() for side in self.line_sides(place))
+        return [(track, side) for track, side in fed if track in own or (track, side) in named]
+
     def feeder_ids(self, station: Station) -> list[str]:
         """Return the identifiers of all feeders of a station that feed something, and of its own return feeders."""
-        found = [feeder_id(station.id, *key) for track, at in self.fed[station.id].items()
-                 for key in ((track, side) for side in self.line_sides(at))]  # fmt: skip
+        found = [feeder_id(station.id, *key) for key in self.feeders(station)]
         return found + [row.id for row in self.supply.feeders if row.at == station.id and row.side == "return"]
 
 

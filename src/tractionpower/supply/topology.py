@@ -226,7 +226,8 @@ def lay_spans(supply: Supply, line: Line, conductors: Sequence[ConductorRow], cu
     cuts
         Places (track, kilometre) of devices.
     """
-    topology = Topology(compile_axes(line), find_bundles(supply, line, conductors))
+    axes = compile_axes(line)
+    topology = Topology(axes, find_bundles(supply, line, axes, conductors))
     for bundle in topology.bundles:
         bundle.cut_at(km for track, km in cuts if track in bundle.tracks)
         for piece in range(len(bundle.contacts)):
@@ -241,7 +242,7 @@ def lay_spans(supply: Supply, line: Line, conductors: Sequence[ConductorRow], cu
 
 
 def _add_span(topology: Topology, bundle: Bundle, piece: int, rails: Rails) -> None:
-    nodes, low, high = topology.nodes, bundle.cuts[piece], bundle.cuts[piece + 1]
+    nodes, (low, high) = topology.nodes, bundle.pieces[piece]
     length = topology.distance_m(rails.tracks[0], low, high)
     contacts = bundle.contacts[piece]
     tracks = tuple(track for track in rails.tracks if track in contacts)
@@ -265,7 +266,7 @@ def _note_rail_places(topology: Topology) -> None:
             for piece in (cut - 1, cut):
                 for rails in bundle.rails[piece] if 0 <= piece < last else ():
                     beside.setdefault(rails.number, rails)
-                    way = topology.distance_m(rails.tracks[0], bundle.cuts[piece], bundle.cuts[piece + 1])
+                    way = topology.distance_m(rails.tracks[0], *bundle.pieces[piece])
                     length[rails.number] = length.get(rails.number, 0.0) + 0.5 * way
             for number, rails in sorted(beside.items()):
                 node = topology.nodes("rail", number, bundle.tracks, cut)

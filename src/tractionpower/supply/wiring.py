@@ -135,9 +135,12 @@ class _Wiring:
         positive = self.nodes("positive", station.id)
         kind = "feeder" if isinstance(station, Substation) else "cabin"
         rows: dict[tuple[str, str], Feeder] = {(row.track, row.side): row for row in self.rows.get(station.id, ())}
+        own = tracks_at(self.axes, station.km, station.tracks)
         for track, km in self.feeds[station.id].items():
             for side, node in self._sides(track, km).items():
                 row = rows.get((track, side))
+                if row is None and track not in own:  # to another line lead the feeders that are named
+                    continue
                 ohm = station.feeder_resistance_ohm
                 closed = in_network
                 if row is not None:
