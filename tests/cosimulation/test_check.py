@@ -48,7 +48,7 @@ def test_rounding_of_an_interval_is_no_problem(step_s, every):
 def test_an_unknown_table_is_told_with_those_that_exist():
     problem = problems_of(load("x"), output={"tables": ["loads", "laods"]})["output.tables[1]"]
     assert problem.found == "'laods'"
-    assert "switches, loads, profile, rails, rail_profile, earthing" in problem.allowed
+    assert "substations, feeders, cabins, switches, loads, profile, rails, rail_profile, earthing" in problem.allowed
 
 
 @pytest.mark.parametrize(("warm_up", "told"), [(8.0, False), (8.5, True), (9.9, True)])

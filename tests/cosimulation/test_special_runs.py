@@ -282,7 +282,8 @@ def test_falling_kilometres_and_two_legs():
     """A train that changes the track draws its current from the other one from then on."""
     switch = [{"from": {"track": "1", "km": 8.0}, "to": {"track": "2", "km": 8.0}}]
     route = [{"track": "2", "from_km": 14.0, "to_km": 8.0}, {"track": "1", "from_km": 8.0, "to_km": 3.0}]
-    scenario = couple(run("E", route=route), connections=switch, section_cabins=[], end_s=700.0)
+    points = [{"id": "P", "track": "1", "km": 8.0}]  # without it the contact lines of both tracks were tied there
+    scenario = couple(run("E", route=route), connections=switch, section_cabins=[], section_points=points, end_s=700.0)
     results, rows = tables_of(scenario)
     assert (np.diff(rows["position_km"]) <= 0.0).all()
     np.testing.assert_allclose(rows["position_km"], 14.0 - rows["distance_m"] / 1000.0, atol=1e-6)

@@ -322,6 +322,6 @@ def pieces_of(scenario, bounds):
     for first, end in pairwise(bounds):
         buffers = new_buffers(made.compiled.block, end - first)
         advance(made.compiled.block, made.state, buffers, end)
-        made.recorder.add(first, end - first, buffers)
+        made.recorder.add(first, end - first, buffers, made.compiled.supply)
     made.recorder.close()
     return made.recorder.key_figures(), made.recorder.summary()

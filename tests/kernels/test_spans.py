@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
+from tractionpower.kernels import spans
 from tractionpower.kernels.spans import condense, expand, place_ports
 from tractionpower.kernels.tables import CONDUCTOR, NO_SLOT, PORT, SEGMENT, SPAN, Network, new_work
 from tractionpower.supply.ordering import order_nodes
@@ -10,10 +12,14 @@ from tractionpower.supply.ordering import order_nodes
 SEGMENTS = np.array([(-np.inf, 0.0, 0.0, 0.0)], SEGMENT)
 
 
-def make_span(rng, width, count, *, rail_ohm=1e-5):
-    """Return a network of one span whose conductors run between nodes of their own; the last right end is ground."""
+def make_span(rng, width, count, *, rail_ohm=1e-5, leaks=False):
+    """Return a network of one span whose conductors run between nodes of their own; the last right end is ground.
+
+    Where it leaks, every conductor does, by up to some thousand times as much as rails would.
+    """
     length = float(rng.uniform(500.0, 5000.0))
     ohm = [*rng.uniform(2e-5, 1e-4, width - 1), rail_ohm]
+    siemens = 10.0 ** rng.uniform(-7.0, -1.0, width) if leaks else np.zeros(width)
     n = 2 * width - 1
     structure = order_nodes(n, [list(range(n + 1))])
     rank = {node: k for k, node in enumerate(structure.order)} | {n: n}
@@ -25,15 +31,21 @@ def make_span(rng, width, count, *, rail_ohm=1e-5):
     fronts = np.cumsum([o > 0.0 for o in ohm]) - 1 + len(terminals)
     ground = int(fronts[-1]) + 1
     conductors = np.zeros(width, CONDUCTOR)
+    base = np.zeros(n + 1 + len(structure.row))
     for c, (a, b) in enumerate(ends):
+        through, shunt = ladder(ohm[c], siemens[c], length) if ohm[c] > 0.0 else (0.0, 0.5 * siemens[c] * length)
         conductors[c] = (
-            ohm[c], a, b, structure.place(a, b),
+            ohm[c], siemens[c], through, shunt, a, b, structure.place(a, b),
             slot.get(a, ground), fronts[c] if ohm[c] > 0.0 else NO_SLOT, slot.get(b, ground),
         )  # fmt: skip
+        base[[a, b]] += through if a != b else 0.0
+        base[structure.place(a, b)] -= through if a != b else 0.0
+        base[a] += shunt
+        base[b] += shunt
     scatter = [structure.place(terminals[i], terminals[j]) for i in range(len(terminals)) for j in range(i + 1)]
-    spans = np.zeros(1, SPAN)
-    spans["length_m"], spans["conductors"], spans["fronts"] = length, width, np.count_nonzero(ohm)
-    spans["right_terminals"], spans["left_terminals"] = len(right), len(left)
+    table = np.zeros(1, SPAN)
+    table["length_m"], table["conductors"], table["fronts"] = length, width, np.count_nonzero(ohm)
+    table["right_terminals"], table["left_terminals"] = len(right), len(left)
     ports = np.zeros(count, PORT)
     for port in ports:
         positive, negative = rng.choice(width, 2, replace=False)
@@ -41,20 +53,40 @@ def make_span(rng, width, count, *, rail_ohm=1e-5):
         if rng.random() < 0.3:
             port["x_m"] = rng.choice([0.0, 0.4, length - 0.3, length, *ports["x_m"]])
         port["segments"], port["scale"] = 1, 1.0
-    base = np.zeros(n + 1 + len(structure.row))
     network = Network(
-        spans, conductors, ports, SEGMENTS, np.array(terminals), np.array(scatter),
+        table, conductors, ports, SEGMENTS, np.array(terminals), np.array(scatter),
         structure.column_start, structure.row, structure.target, base,
     )  # fmt: skip
     return network, structure, ends
+
+
+def ladder(ohm_per_m, siemens_per_m, length):
+    """Return conductance and shunts of a conductor by halving: two equal pi-elements in a row are one of twice the length.
+
+    It begins with pieces so short that half of the leakage stands at either end of the resistance.
+    """
+    pieces = 2**30
+    element = length / pieces
+    through, shunt = 1.0 / (ohm_per_m * element), 0.5 * siemens_per_m * element
+    while pieces > 1:
+        node = through + shunt  # half of what meets in the node between the two
+        through, shunt = 0.5 * through**2 / node, shunt * (through + node) / node
+        pieces //= 2
+    return through, shunt
 
 
 def dense(network, work, ends):
     """Return the nodal matrix and currents of the span with all its nodes, and the two nodes of every port."""
     n, span = network.nodes, network.spans[0]
     wires, nodes, count = [], np.zeros((len(network.ports), 2), int), n + 1
+
+    def lay(first, second, conductor, length):
+        through, shunt = ladder(float(conductor["ohm_per_m"]), float(conductor["siemens_per_m"]), length)
+        wires.extend([(first, second, through), (first, n, shunt), (second, n, shunt)])
+
     for c, (left, right) in enumerate(ends):
-        ohm, length = float(network.conductors["ohm_per_m"][c]), float(span["length_m"])
+        conductor = network.conductors[c]
+        ohm, length = float(conductor["ohm_per_m"]), float(span["length_m"])
         last, last_x = left, 0.0
         for p in np.argsort(network.ports["x_m"], kind="stable"):
             for side, name in enumerate(("positive", "negative")):
@@ -67,11 +99,13 @@ def dense(network, work, ends):
                     nodes[p, side] = right
                 else:
                     if last == left or x - last_x >= 1.0:
-                        wires.append((last, count, 1.0 / (ohm * (x - last_x))))
+                        lay(last, count, conductor, x - last_x)
                         last, last_x, count = count, x, count + 1
                     nodes[p, side] = last
         if ohm > 0.0:
-            wires.append((last, right, 1.0 / (ohm * (length - last_x))))
+            lay(last, right, conductor, length - last_x)
+        else:
+            wires.append((left, n, float(conductor["siemens_per_m"]) * length))
     g, b = np.zeros((count, count)), np.zeros(count)
     for i, j, s in [*wires, *((i, j, work.ports["g"][p]) for p, (i, j) in enumerate(nodes))]:
         g[i, i] += s
@@ -96,10 +130,11 @@ def prepare(seed, width, *, sign=1.0, **more):
     return network, work, structure, ends, rng
 
 
+@pytest.mark.parametrize("leaks", [False, True])
 @pytest.mark.parametrize("width", [2, 3, 4, 5])
 @pytest.mark.parametrize("seed", range(12))
-def test_condensed_and_expanded(seed, width):
-    network, work, structure, ends, rng = prepare(seed, width)
+def test_condensed_and_expanded(seed, width, leaks):
+    network, work, structure, ends, rng = prepare(seed, width, leaks=leaks)
     assert condense(network, work)
     g, b, nodes = dense(network, work, ends)
     n = network.nodes
@@ -136,8 +171,9 @@ def test_a_fresh_span_is_not_swept_again(seed):
     np.testing.assert_array_equal(work.node_v, node_v)
 
 
-def test_rails_without_resistance():
-    network, work, _, ends, rng = prepare(5, 3, rail_ohm=0.0)
+@pytest.mark.parametrize("leaks", [False, True])
+def test_rails_without_resistance(leaks):
+    network, work, structure, ends, rng = prepare(5, 3, rail_ohm=0.0, leaks=leaks)
     assert condense(network, work)
     g, b, nodes = dense(network, work, ends)
     n = network.nodes
@@ -148,6 +184,9 @@ def test_rails_without_resistance():
     x[:n] = v
     x[inner] = np.linalg.solve(g[np.ix_(inner, inner)], b[inner] - g[np.ix_(inner, np.arange(n))] @ v)
     np.testing.assert_allclose(work.ports["u_next"], x[nodes[:, 0]] - x[nodes[:, 1]], rtol=1e-9, atol=1e-7)
+    rail = ends[-1][0]
+    own = float(network.conductors["siemens_per_m"][-1]) * float(network.spans["length_m"][0])
+    assert work.step_base[structure.place(rail, rail)] == own  # all of the leakage at the one node that it is
 
 
 def test_a_strongly_falling_port_is_told():
@@ -195,3 +234,63 @@ def test_ports_between_skeleton_nodes_come_first():
     place_ports(network, work)
     assert work.order[0] == len(ports) - 2
     assert work.spans["ports"][0] == len(ports) - 1
+
+
+# -- leaky conductors
+
+
+def wire(ohm_per_m, siemens_per_m):
+    conductor = np.zeros(1, CONDUCTOR).view(np.recarray)
+    conductor["ohm_per_m"], conductor["siemens_per_m"] = ohm_per_m, siemens_per_m
+    return conductor[0]
+
+
+def pi_element(conductor, length):
+    """Return what the kernel's function does; compiled, it exists within its callers only."""
+    return getattr(spans.pi_element, "py_func", spans.pi_element)(conductor, length)
+
+
+@pytest.mark.parametrize("siemens", [1e-9, 1e-6, 1e-5, 1e-3])
+@pytest.mark.parametrize("length", [1.0, 100.0, 3000.0, 50_000.0])
+def test_pi_element_against_the_telegraph_equation(siemens, length):
+    """U'' = r g U, integrated from one end to the other with U(0) = 1 and no current, then with a current of 1 A."""
+    ohm = 2e-5
+    through, shunt = pi_element(wire(ohm, siemens), length)
+
+    def end(u, i):
+        def slope(_, y):
+            return [-ohm * y[1], -siemens * y[0]]
+
+        found = solve_ivp(slope, (0.0, length), [u, i], method="DOP853", rtol=1e-12, atol=1e-14)
+        return found.y[:, -1]
+
+    for u, i in ((1.0, 0.0), (0.0, 1.0)):
+        u_end, i_end = end(u, i)
+        inner = i - shunt * u  # what flows through the resistance
+        assert u - inner / through == pytest.approx(u_end, rel=1e-8, abs=1e-10)
+        assert inner - shunt * (u - inner / through) == pytest.approx(i_end, rel=1e-8, abs=1e-10)
+
+
+@pytest.mark.parametrize("siemens", [1e-8, 1e-4, 1e-2])
+def test_pi_element_is_the_limit_of_a_ladder(siemens):
+    assert pi_element(wire(2e-5, siemens), 4000.0) == pytest.approx(ladder(2e-5, siemens, 4000.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("siemens", [0.0, 1e-300, 1e-30, 1e-18, 1e-12])
+def test_what_hardly_leaks_is_a_resistance(siemens):
+    conductor = wire(2e-5, siemens)
+    through, shunt = pi_element(conductor, 1000.0)
+    assert through == pytest.approx(50.0, rel=1e-9)
+    assert shunt == pytest.approx(500.0 * siemens, rel=1e-9)
+
+
+def test_nothing_gets_through_what_leaks_without_end():
+    through, shunt = pi_element(wire(1e-2, 1.0), 1e5)
+    assert 0.0 <= through < 1e-290
+    assert shunt == pytest.approx(np.sqrt(1.0 / 1e-2))
+
+
+def test_short_and_long_formula_meet():
+    limit = 1e-8 / np.sqrt(2e-5 * 1e-9)
+    below, above = (pi_element(wire(2e-5, 1e-9), limit * factor) for factor in (1.0 - 1e-12, 1.0 + 1e-12))
+    assert below == pytest.approx(above, rel=1e-11)

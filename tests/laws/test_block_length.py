@@ -137,7 +137,7 @@ def summed_up(cuts):
     for first, end in pairwise([0, *cuts, STEPS]):
         buffers = new_buffers(tables, STEPS)
         advance(tables, run.state, buffers, end)
-        run.recorder.add(first, end - first, buffers)
+        run.recorder.add(first, end - first, buffers, run.compiled.supply)
     run.recorder.close()
     tables = {name: table.to_pandas() for name, table in writer.tables().items()}
     return run.recorder.key_figures(), run.recorder.summary(), {name: table.to_csv() for name, table in tables.items()}

@@ -246,7 +246,7 @@ def summed_up(cuts):
     for first, end in pairwise([0, *cuts, STEPS]):
         buffers = new_buffers(made.compiled.block, STEPS)
         advance(made.compiled.block, made.state, buffers, end)
-        made.recorder.add(first, end - first, buffers)
+        made.recorder.add(first, end - first, buffers, made.compiled.supply)
     made.recorder.close()
     tables = {name: table.to_pandas().to_csv() for name, table in writer.tables().items()}
     return made.recorder.key_figures(), made.recorder.summary(), tables

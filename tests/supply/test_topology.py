@@ -1,45 +1,18 @@
 """Which conductors meet in which node, for every state of every switch."""
 
 import pytest
+from nodes import Graph, line, rails_of_each, station, supply
 from solved import seed_network
 
-from tractionpower.model.line import ChainageBreak, Line, Track
-from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, SectionPoint, Substation, Supply
-from tractionpower.supply.topology import SHORT_OHM, Merger, build_topology
+from tractionpower.model.earthing import Bonds
+from tractionpower.model.line import ChainageBreak
+from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, SectionPoint
+from tractionpower.supply.topology import SHORT_OHM
+from tractionpower.supply.wiring import build_topology
 
 
-def line(tracks="12", low=0.0, high=20.0, **more):
-    return Line(tracks=tuple(Track(id=t, from_km=low, to_km=high) for t in tracks), **more)
-
-
-def station(name="S", km=10.0, **more):
-    return Substation(**({"id": name, "km": km, "no_load_voltage_v": 3600.0, "internal_resistance_ohm": 0.12} | more))
-
-
-def supply(**more):
-    good = {
-        "contact_lines": (ContactLine(from_km=0.0, to_km=20.0, resistance_ohm_per_km=0.05),),
-        "return_circuit": (ReturnCircuit(from_km=0.0, to_km=20.0, resistance_ohm_per_km=0.01),),
-    }
-    return Supply(**(good | more))
-
-
-def joined(topology, first, second):
-    return topology.nodes.find(first) == topology.nodes.find(second)
-
-
-def low(track, km=10.0):
-    return "low", track, km
-
-
-def high(track, km=10.0):
-    return "high", track, km
-
-
-def edges(topology, *ends):
-    """Return the resistances between two nodes."""
-    wanted = {topology.nodes.find(end) for end in ends}
-    return [ohm for a, b, ohm in topology.edges if {topology.nodes.find(a), topology.nodes.find(b)} == wanted]
+def graph(declared, along=None):
+    return Graph(build_topology(declared, along or line()))
 
 
 # -- substations
@@ -51,49 +24,51 @@ def edges(topology, *ends):
      ("open", False, False, False)],
 )  # fmt: skip
 def test_states_of_a_substation(state, through, tied, stands):
-    topology = build_topology(supply(substations=(station(state=state),)), line())
-    assert joined(topology, low("1"), high("1")) is through
-    assert joined(topology, low("1"), low("2")) is tied
-    assert ("S" in topology.busbars) is stands
-    assert len(topology.feeders) == (4 if stands else 0)
-    if stands:
-        assert joined(topology, ("positive", "S"), high("2"))
-        assert joined(topology, ("negative", "S"), ("rail", 0, 10.0))
+    found = graph(supply(substations=(station(state=state),)))
+    assert found.one(found.low("1"), found.high("1")) is through
+    assert found.one(found.low("1"), found.low("2")) is tied
+    assert ("S" in found.topology.busbars) is stands
+    assert [link.closed for link in found.topology.links] == [stands] * 4
+    assert found.one(found.positive(), found.high("2")) is stands
+    assert found.one(found.negative(), found.rail("1"))
 
 
 @pytest.mark.parametrize("state", ["in_service", "rectifiers_out"])
 def test_feeders_with_resistance_separate_the_sides(state):
     one = station(state=state, feeder_resistance_ohm=0.02, return_resistance_ohm=0.03)
-    topology = build_topology(supply(substations=(one,)), line())
-    nodes = [low("1"), high("1"), low("2"), high("2")]
-    assert len({topology.nodes.find(node) for node in nodes}) == 4
+    found = graph(supply(substations=(one,)))
+    nodes = [found.low("1"), found.high("1"), found.low("2"), found.high("2")]
+    assert len({found.topology.find(node) for node in nodes}) == 4
     for node in nodes:
-        assert edges(topology, ("positive", "S"), node) == [0.02]
-    assert edges(topology, ("negative", "S"), ("rail", 0, 10.0)) == [0.03]
-    assert len(topology.edges) == 5
+        assert found.ohms(found.positive(), node) == [0.02]
+    assert found.ohms(found.negative(), found.rail("1")) == [0.03]
+    assert len([*found.topology.edges()]) == 5
 
 
 def test_a_resistance_too_small_to_matter_is_none():
-    topology = build_topology(supply(substations=(station(feeder_resistance_ohm=0.5 * SHORT_OHM),)), line())
-    assert topology.edges == []
-    assert joined(topology, low("1"), high("2"))
+    found = graph(supply(substations=(station(feeder_resistance_ohm=0.5 * SHORT_OHM),)))
+    assert [*found.topology.edges()] == []
+    assert found.one(found.low("1"), found.high("2"))
+    found = graph(supply(substations=(station(feeder_resistance_ohm=2.0 * SHORT_OHM),)))
+    assert len([*found.topology.edges()]) == 4
 
 
 def test_feeders_are_listed_by_substation_track_and_side():
     topology = build_topology(
         supply(substations=(station("B", 20.0), station("A", 0.0), station("M", 5.0, tracks=("2",)))), line()
     )
-    assert [(f.substation, f.track, f.side, f.km) for f in topology.feeders] == [
+    assert {link.kind for link in topology.links} == {"feeder"}
+    assert [(link.station, link.track, link.side, link.km) for link in topology.links] == [
         ("A", "1", "high_km", 0.0), ("A", "2", "high_km", 0.0),
         ("B", "1", "low_km", 20.0), ("B", "2", "low_km", 20.0),
-        ("M", "2", "high_km", 5.0), ("M", "2", "low_km", 5.0),
+        ("M", "2", "low_km", 5.0), ("M", "2", "high_km", 5.0),
     ]  # fmt: skip
 
 
 def test_a_substation_of_one_track_leaves_the_other_alone():
-    topology = build_topology(supply(substations=(station(tracks=("1",), feeder_resistance_ohm=0.02),)), line())
-    assert not joined(topology, low("1"), high("1"))
-    assert joined(topology, low("2"), high("2"))
+    found = graph(supply(substations=(station(tracks=("1",), feeder_resistance_ohm=0.02),)))
+    assert not found.one(found.low("1"), found.high("1"))
+    assert found.one(found.low("2"), found.high("2"))
 
 
 # -- cabins and section points
@@ -103,45 +78,48 @@ def test_a_substation_of_one_track_leaves_the_other_alone():
     ("state", "through", "tied"), [("closed", True, True), ("bypassed", True, False), ("open", False, False)]
 )
 def test_states_of_a_cabin(state, through, tied):
-    topology = build_topology(supply(section_cabins=(SectionCabin(id="C", km=10.0, state=state),)), line())
-    assert joined(topology, low("1"), high("1")) is through
-    assert joined(topology, low("1"), low("2")) is tied
-    assert joined(topology, high("1"), high("2")) is tied
+    found = graph(supply(section_cabins=(SectionCabin(id="C", km=10.0, state=state),)))
+    assert found.one(found.low("1"), found.high("1")) is through
+    assert found.one(found.low("1"), found.low("2")) is tied
+    assert found.one(found.high("1"), found.high("2")) is tied
+    assert [(link.kind, link.closed) for link in found.topology.links] == [("cabin", state == "closed")] * 4
 
 
 def test_a_cabin_joins_contact_lines_never_rails():
-    rails = tuple(ReturnCircuit(tracks=(t,), from_km=0.0, to_km=20.0, resistance_ohm_per_km=0.02) for t in "12")
-    topology = build_topology(supply(section_cabins=(SectionCabin(id="C", km=10.0),), return_circuit=rails), line())
-    assert joined(topology, low("1"), low("2"))
-    assert not joined(topology, ("rail", 0, 10.0), ("rail", 1, 10.0))
+    found = graph(supply(section_cabins=(SectionCabin(id="C", km=10.0),), return_circuit=rails_of_each()))
+    assert found.one(found.low("1"), found.low("2"))
+    assert not found.one(found.rail("1"), found.rail("2"))
 
 
 @pytest.mark.parametrize("state", ["in_service", "rectifiers_out", "bypassed", "open"])
 def test_a_substation_joins_the_rails_of_its_tracks_in_every_state(state):
-    rails = tuple(ReturnCircuit(tracks=(t,), from_km=0.0, to_km=20.0, resistance_ohm_per_km=0.02) for t in "12")
-    topology = build_topology(
-        supply(substations=(station(state=state, return_resistance_ohm=0.1),), return_circuit=rails), line()
-    )
-    assert joined(topology, ("rail", 0, 10.0), ("rail", 1, 10.0))
-    other = build_topology(supply(substations=(station(state=state, tracks=("1",)),), return_circuit=rails), line())
-    assert not joined(other, ("rail", 0, 10.0), ("rail", 1, 10.0))
+    rails = rails_of_each()
+    found = graph(supply(substations=(station(state=state, return_resistance_ohm=0.1, tracks=("1", "2")),), return_circuit=rails))
+    assert found.one(found.rail("1"), found.rail("2"))
+    other = graph(supply(substations=(station(state=state, tracks=("1",)),), return_circuit=rails, bonds=(bond_beside(),)))
+    assert not other.one(other.rail("1"), other.rail("2"))
 
 
 @pytest.mark.parametrize(("state", "through"), [("open", False), ("closed", True)])
 def test_section_points(state, through):
-    topology = build_topology(supply(section_points=(SectionPoint(id="P", track="1", km=7.0, state=state),)), line())
-    assert joined(topology, low("1", 7.0), high("1", 7.0)) is through
-    assert joined(topology, low("2", 7.0), high("2", 7.0))
+    found = graph(supply(section_points=(SectionPoint(id="P", track="1", km=7.0, state=state),)))
+    assert found.one(found.low("1", 7.0), found.high("1", 7.0)) is through
+    assert found.one(found.low("2", 7.0), found.high("2", 7.0))
 
 
 def test_an_open_point_beside_a_closed_cabin():
     cabin = SectionCabin(id="C", km=10.0)
     point = SectionPoint(id="P", track="1", km=10.0)
-    topology = build_topology(supply(section_cabins=(cabin,), section_points=(point,)), line())
-    assert joined(topology, low("1"), high("1"))  # by the busbar of the cabin, which takes both sides
+    found = graph(supply(section_cabins=(cabin,), section_points=(point,)))
+    assert found.one(found.low("1"), found.high("1"))  # by the busbar of the cabin, which takes both sides
 
 
 # -- spans
+
+
+def bond_beside():
+    """Return a bond at km 5."""
+    return Bonds(from_km=5.0, to_km=5.1, every_km=1.0)
 
 
 def test_spans_between_cuts():
@@ -149,15 +127,17 @@ def test_spans_between_cuts():
     assert [(span.from_km, span.to_km, len(span.conductors)) for span in topology.spans] == [(0.0, 10.0, 3), (10.0, 20.0, 3)]
     span = topology.spans[0]
     assert [c.ohm_per_m for c in span.conductors] == pytest.approx([5e-5, 5e-5, 1e-5])
-    assert span.returns == {"1": 2, "2": 2}
+    assert span.tracks == ("1", "2")
     assert [span.contact(track) for track in "12"] == [0, 1]
-    assert span.conductors[2].name == ("rail", "0")
+    assert span.rail is span.conductors[2]
+    found = Graph(topology)
+    assert (span.rail.left, span.rail.right) == (found.rail("1", 0.0), found.rail("2", 10.0))
+    assert (span.conductors[1].left, span.conductors[1].right) == (found.high("2", 0.0), found.low("2", 10.0))
 
 
 def test_returns_of_each_track_make_spans_of_their_own():
-    rails = tuple(ReturnCircuit(tracks=(t,), from_km=0.0, to_km=20.0, resistance_ohm_per_km=0.02) for t in "12")
-    topology = build_topology(supply(return_circuit=rails, substations=(station(tracks=("1",)),)), line())
-    assert [(sorted(span.returns), span.from_km, span.to_km) for span in topology.spans] == [
+    topology = build_topology(supply(return_circuit=rails_of_each(), substations=(station(tracks=("1",)),)), line())
+    assert [([*span.tracks], span.from_km, span.to_km) for span in topology.spans] == [
         (["1"], 0.0, 10.0), (["1"], 10.0, 20.0), (["2"], 0.0, 20.0),
     ]  # fmt: skip
 
@@ -169,16 +149,16 @@ def test_groups_of_tracks_that_change_on_the_way():
         ReturnCircuit(tracks=("1",), from_km=8.0, to_km=20.0, resistance_ohm_per_km=0.02),
         ReturnCircuit(tracks=("2", "3"), from_km=8.0, to_km=20.0, resistance_ohm_per_km=0.01),
     )
-    topology = build_topology(supply(return_circuit=rails), line("123"))
-    assert len({topology.nodes.find(("rail", k, 8.0)) for k in range(4)}) == 1  # track 2 links the first and the last
-    assert [sorted(span.returns) for span in topology.spans] == [["1", "2"], ["3"], ["1"], ["2", "3"]]
+    found = graph(supply(return_circuit=rails), line("123"))
+    assert found.one(*(found.rail("1", 8.0, row) for row in range(4)))  # track 2 links the first and the last
+    assert [span.tracks for span in found.topology.spans] == [("1", "2"), ("3",), ("1",), ("2", "3")]
 
 
 def test_rails_without_resistance_are_one_node():
     rails = (ReturnCircuit(from_km=0.0, to_km=20.0, resistance_ohm_per_km=0.0),)
-    topology = build_topology(supply(return_circuit=rails, substations=(station(),)), line())
-    assert joined(topology, ("rail", 0, 0.0), ("rail", 0, 20.0))
-    assert [span.conductors[-1].ohm_per_m for span in topology.spans] == [0.0, 0.0]
+    found = graph(supply(return_circuit=rails, substations=(station(),)))
+    assert found.one(found.rail("1", 0.0), found.rail("1", 20.0))
+    assert [span.rail.ohm_per_m for span in found.topology.spans] == [0.0, 0.0]
 
 
 def test_a_change_of_the_contact_line_is_a_cut_and_no_separation():
@@ -186,9 +166,9 @@ def test_a_change_of_the_contact_line_is_a_cut_and_no_separation():
         ContactLine(from_km=0.0, to_km=6.0, resistance_ohm_per_km=0.05),
         ContactLine(from_km=6.0, to_km=20.0, resistance_ohm_per_km=0.08),
     )
-    topology = build_topology(supply(contact_lines=wires), line())
-    assert [span.conductors[0].ohm_per_m for span in topology.spans] == pytest.approx([5e-5, 8e-5])
-    assert joined(topology, low("1", 6.0), high("1", 6.0))
+    found = graph(supply(contact_lines=wires))
+    assert [span.conductors[0].ohm_per_m for span in found.topology.spans] == pytest.approx([5e-5, 8e-5])
+    assert found.plainly_one(found.low("1", 6.0), found.high("1", 6.0))
 
 
 def test_a_gap_of_the_contact_line():
@@ -198,8 +178,8 @@ def test_a_gap_of_the_contact_line():
         ContactLine(from_km=9.0, to_km=20.0, resistance_ohm_per_km=0.05, tracks=("1",)),
     )
     topology = build_topology(supply(contact_lines=wires, substations=(station(km=6.0),)), line())
-    assert [sorted(span.returns) for span in topology.spans] == [["1", "2"], ["2"], ["1", "2"]]
-    assert [(f.track, f.side) for f in topology.feeders] == [("1", "low_km"), ("2", "high_km"), ("2", "low_km")]
+    assert [span.tracks for span in topology.spans] == [("1", "2"), ("2",), ("1", "2")]
+    assert [(link.track, link.side) for link in topology.links] == [("1", "low_km"), ("2", "low_km"), ("2", "high_km")]
     with pytest.raises(LookupError, match="track 1 at km 7"):
         topology.locate("1", 7.0)
 
@@ -255,13 +235,56 @@ def test_the_seed_network():
     topology = build_topology(*seed_network([Load(id="x", track="1", km=3.0, power_kw=1.0)]))
     assert [(span.from_km, span.to_km) for span in topology.spans] == [(0.0, 10.0), (10.0, 20.0)]
     assert topology.locate("1", 3.0) == (0, pytest.approx(3000.0))
-    assert {track for track, *_ in topology.sections} == {"1", "2"}
-    assert [(track, km) for track, km, _, _ in topology.sections][:4] == [("1", 0.0), ("1", 10.0), ("2", 0.0), ("2", 10.0)]
+    places = [(section.track, section.km) for section in topology.sections]
+    assert places == [(track, km) for track in "12" for km in (0.0, 10.0, 10.0, 20.0)]  # both sides of the cabin
 
 
-def test_a_merger_names_the_smallest():
-    merger = Merger()
-    merger.join("c", "b")
-    merger.join("b", "a")
-    assert merger.find("c") == "a"
-    assert merger.find("z") == "z"
+# -- places that are recorded
+
+
+def test_sections_are_the_same_in_every_state():
+    """What is recorded does not depend on what is switched: rows of a run go into one table."""
+    names = []
+    for state in ("in_service", "rectifiers_out", "bypassed", "open"):
+        points = (SectionPoint(id="P", track="2", km=4.0, state="open" if state == "open" else "closed"),)
+        topology = build_topology(supply(substations=(station(state=state),), section_points=points), line())
+        names.append([(section.track, section.km) for section in topology.sections])
+    assert names[0] == [
+        ("1", 0.0), ("1", 4.0), ("1", 10.0), ("1", 10.0), ("1", 20.0),
+        ("2", 0.0), ("2", 4.0), ("2", 4.0), ("2", 10.0), ("2", 10.0), ("2", 20.0),
+    ]  # fmt: skip
+    assert names[1:] == [names[0]] * 3
+
+
+def test_rail_places_share_the_length_of_the_rails():
+    broken = line(chainage_breaks=(ChainageBreak(at_km=7.0, continues_as_km=9.0),))
+    rails = rails_of_each(leakage=0.1)
+    declared = supply(return_circuit=rails, substations=(station(km=12.0),), bonds=(bond_beside(),))
+    places = build_topology(declared, broken).rail_places
+    assert [(place.tracks, place.km) for place in places] == [(track, km) for track in "12" for km in (0.0, 5.0, 12.0, 20.0)]
+    assert [place.length_m for place in places if place.tracks == "1"] == pytest.approx([2500.0, 5000.0, 6500.0, 4000.0])
+    assert [place.leakage_s_per_m for place in places] == [pytest.approx(1e-4)] * 8
+
+
+def test_rail_places_where_rows_of_rails_meet():
+    rails = (
+        ReturnCircuit(from_km=0.0, to_km=8.0, resistance_ohm_per_km=0.01, leakage_s_per_km=0.2),
+        ReturnCircuit(from_km=8.0, to_km=20.0, resistance_ohm_per_km=0.02),
+    )
+    found = graph(supply(return_circuit=rails))
+    places = [(place.km, place.length_m, place.leakage_s_per_m) for place in found.topology.rail_places]
+    assert places == [
+        (0.0, pytest.approx(4000.0), pytest.approx(2e-4)), (8.0, pytest.approx(4000.0), pytest.approx(2e-4)),
+        (8.0, pytest.approx(6000.0), 0.0), (20.0, pytest.approx(6000.0), 0.0),
+    ]  # fmt: skip
+    assert found.one(found.rail("1", 8.0, 0), found.rail("1", 8.0, 1))
+
+
+def test_lengths_are_the_same_at_once_and_one_by_one():
+    broken = line(chainage_breaks=(ChainageBreak(at_km=7.0, continues_as_km=9.0),))
+    topology = build_topology(
+        supply(substations=(station(km=12.3),), section_points=(SectionPoint(id="P", track="1", km=3.7),)), broken
+    )
+    for span in topology.spans:
+        assert span.length_m == topology.distance_m("1", span.from_km, span.to_km)
+    assert topology.distance_m("1", -1.0, 25.0) == pytest.approx(18_000.0)  # as far as the track goes

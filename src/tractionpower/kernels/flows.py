@@ -5,6 +5,8 @@ This looks at the solution afresh from the node potentials, so that the balance 
 
 from __future__ import annotations
 
+import numpy as np
+
 from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.ports import port_current
 from tractionpower.kernels.tables import EDGE_CURRENT, LEFT_END, PORT_CURRENT, SHARED
@@ -77,7 +79,7 @@ def _insert(network, work, side, i):
         return 0.0, 0.0
     drop = w.front_v - side.node_v
     inflow = drop * side.conductance_s
-    leaves, enters = _leak(w, side.shunt_s, w.front_v, side.node_v)
+    leaves, enters = _leak(w, side.conductance_s, side.shunt_s, w.front_v, side.node_v)
     gap = abs(w.front_a - inflow - leaves) if w.open else 0.0
     heat = drop * inflow + leaves * w.front_v + enters * side.node_v
     if not w.open:
@@ -89,11 +91,21 @@ def _insert(network, work, side, i):
 
 
 @inlined
-def _leak(w, shunt, before_v, after_v):
-    """Return the currents into earth at the two ends of an element, and count what leaves."""
+def _leak(w, conductance, shunt, before_v, after_v):
+    """Return the currents into earth at the two ends of an element, and count what leaves where the potential is positive.
+
+    Where the potential changes its sign, the part up to there counts: tanh(a x/2)/Z V with tanh(a x) = sinh(a l)/(cosh(a l)
+    - V'/V), for ends V > 0 > V'; a, Z and l are in the two conductances of the element (`kernels.spans.pi_element`).
+    """
     before, after = shunt * before_v, shunt * after_v
     w.earth_a += before + after
-    w.leaked_a += max(before, 0.0) + max(after, 0.0)
+    high, low = max(before_v, after_v), min(before_v, after_v)
+    if low >= 0.0:
+        w.leaked_a += before + after
+    elif high > 0.0 and shunt > 0.0:
+        whole = (high - low) * conductance + high * shunt
+        part = high * high * shunt * (2.0 * conductance + shunt)
+        w.leaked_a += part / (whole + np.sqrt(max(whole * whole - part, 0.0)))
     return before, after
 
 
@@ -106,7 +118,7 @@ def _finish(conductor, w, node_v, balance):
         if w.nodes == 0:
             conductance, shunt = conductor.whole_s, conductor.whole_shunt_s
         drop = w.front_v - right_v
-        leaves, enters = _leak(w, shunt, w.front_v, right_v)
+        leaves, enters = _leak(w, conductance, shunt, w.front_v, right_v)
         inflow = drop * conductance
         heat = drop * inflow + leaves * w.front_v + enters * right_v
         w.right_a -= inflow - enters
@@ -115,7 +127,7 @@ def _finish(conductor, w, node_v, balance):
         else:
             w.left_a += inflow + leaves
     else:
-        leaves, enters = _leak(w, conductor.whole_shunt_s, left_v, right_v)
+        leaves, enters = _leak(w, 0.0, conductor.whole_shunt_s, left_v, right_v)
         heat = leaves * left_v + enters * right_v
         w.left_a += leaves
         w.right_a += enters

@@ -14,6 +14,9 @@ import numpy as np
 from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.tables import FIRST, NEXT, SHARED, SHARED_NODE_M
 
+SHORT_ANGLE, LONG_ANGLE = 1e-8, 700.0
+"""Electric lengths a l: below it does not matter that a conductor leaks, above nothing gets through and sinh overflows."""
+
 
 @njit
 def place_ports(network, work):
@@ -105,10 +108,11 @@ def pi_element(conductor, length):
     Exact for r ohm/m and g S/m: 1/(Z sinh(a l)) and tanh(a l/2)/Z with a = sqrt(r g), Z = sqrt(r/g) (telegraph equation).
     """
     r, g = conductor.ohm_per_m, conductor.siemens_per_m
-    if g == 0.0:
-        return 1.0 / (r * length), 0.0
-    z, angle = np.sqrt(r / g), np.sqrt(r * g) * length
-    return 1.0 / (z * np.sinh(angle)), np.tanh(0.5 * angle) / z
+    angle = np.sqrt(r * g) * length
+    if angle < SHORT_ANGLE:
+        return 1.0 / (r * length), 0.5 * g * length
+    z = np.sqrt(r / g)
+    return 1.0 / (z * np.sinh(min(angle, LONG_ANGLE))), np.tanh(0.5 * angle) / z
 
 
 @njit

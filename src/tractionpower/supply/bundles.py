@@ -6,15 +6,18 @@ spans. At a cut every contact line has a low and a high side, and the rails one 
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tractionpower.alignment.axis import TrackAxis
 from tractionpower.kernels.tables import SHARED_NODE_M
 from tractionpower.model.conductors import Conductor
-from tractionpower.model.line import Line
+from tractionpower.model.line import Line, Stretch
 from tractionpower.model.supply import ReturnCircuit, Supply
 from tractionpower.supply.conductors import contact_line_resistance, return_resistance
 
@@ -68,7 +71,6 @@ class Bundle:
         self.pieces: list[tuple[float, float]] = []
         self._kms: list[float] = []  # of all that makes cuts, with the cut of each
         self._cut_of: list[int] = []
-        self._first_cut: list[int] = []  # where the kilometres of each cut begin in that list
         self.contacts: list[dict[str, float]] = []
         self.rails: list[list[Rails]] = []
 
@@ -82,41 +84,33 @@ class Bundle:
             low, high = min(self.ends[track][0] for track in tracks), max(self.ends[track][1] for track in tracks)
             every += [max(from_km, low), min(to_km, high)]
         for km in sorted(every):
-            if not self._kms or self._is_beyond(self._kms[-1], km):
-                self._first_cut.append(len(self._kms))
             self._kms.append(km)
-            self._cut_of.append(len(self._first_cut) - 1)
-        last = [*(n - 1 for n in self._first_cut[1:]), len(self._kms) - 1]
-        self.cuts = [self._kms[n] for n in self._first_cut]
-        self.pieces = [(self._kms[low], self._kms[high]) for low, high in zip(last, self._first_cut[1:], strict=False)]
+        metres = np.array([self._metres(track) for track in self.tracks])
+        first: list[int] = []  # where the kilometres of each cut begin
+        for n in range(len(self._kms)):
+            if not first or (metres[:, n] - metres[:, first[-1]]).max() >= SHARED_NODE_M:
+                first.append(n)
+            self._cut_of.append(len(first) - 1)
+        self.cuts = [self._kms[n] for n in first]
+        self.pieces = [(self._kms[high - 1], self._kms[high]) for high in first[1:]]
         middles = [0.5 * (low + high) for low, high in self.pieces]
-        self.contacts = [self._contacts_over(km) for km in middles]
-        self.rails = [self._rails_over(km) for km in middles]
-
-    def _is_beyond(self, before: float, km: float) -> bool:
-        """Tell whether a place is another one than that before it: kilometres that a chainage break leaves out have no length."""
-        ways = []
-        for track in self.tracks:
-            axis = self._axes[track]
-            first, second = (min(max(place, axis.from_km), axis.to_km) for place in (before, km))
-            ways.append(axis.metre(second) - axis.metre(first))
-        return max(ways) >= SHARED_NODE_M
-
-    def _contacts_over(self, km: float) -> dict[str, float]:
-        return {
-            track: contact_line_resistance(row, self._conductors) / 1000.0
-            for row, track in self._contact_rows
-            if row.from_km <= km <= row.to_km and self._exists(track, km)
-        }
-
-    def _rails_over(self, km: float) -> list[Rails]:
-        found = []
+        self.contacts = [{} for _ in middles]
+        self.rails = [[] for _ in middles]
+        for wires, track in self._contact_rows:
+            ohm = contact_line_resistance(wires, self._conductors) / 1000.0
+            for piece in _covered(wires, middles):
+                if self._exists(track, middles[piece]):
+                    self.contacts[piece][track] = ohm
         for number, row, members in self._rail_rows:
-            tracks = tuple(track for track in members if self._exists(track, km))
-            if tracks and row.from_km <= km <= row.to_km:
-                ohm = return_resistance(row, len(tracks), self._conductors) / 1000.0
-                found.append(Rails(number, tracks, ohm, row.leakage_s_per_km / 1000.0))
-        return found
+            for piece in _covered(row, middles):
+                if tracks := tuple(track for track in members if self._exists(track, middles[piece])):
+                    ohm = return_resistance(row, len(tracks), self._conductors) / 1000.0
+                    self.rails[piece].append(Rails(number, tracks, ohm, row.leakage_s_per_km / 1000.0))
+
+    def _metres(self, track: str) -> NDArray[np.float64]:
+        """Return the places of all kilometres along a track [m]: those that a chainage break leaves out have no length."""
+        axis = self._axes[track]
+        return axis.metre(np.clip(self._kms, axis.from_km, axis.to_km))
 
     def _exists(self, track: str, km: float) -> bool:
         low, high = self.ends[track]
@@ -144,9 +138,12 @@ class Bundle:
         return [rails for rails in beside if track in rails.tracks]
 
 
-def find_bundles(
-    supply: Supply, line: Line, axes: Mapping[str, TrackAxis], conductors: Sequence[Conductor]
-) -> list[Bundle]:
+def _covered(row: Stretch, middles: Sequence[float]) -> range:
+    """Return the pieces between cuts, by their rising middles, that a row covers."""
+    return range(bisect_left(middles, row.from_km), bisect_right(middles, row.to_km))
+
+
+def find_bundles(supply: Supply, line: Line, axes: Mapping[str, TrackAxis], conductors: Sequence[Conductor]) -> list[Bundle]:
     """Return the bundles of a line in the order of their first tracks."""
     label: dict[str, str] = {track.id: track.id for track in line.tracks}
     for row in supply.return_circuit:

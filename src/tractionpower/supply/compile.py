@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.kernels.block_tables import OVERCURRENT, RAIL_POTENTIAL, SECTION, TRIGGER
-from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, EDGE, PORT, SEGMENT, SHARED_NODE_M, Network
+from tractionpower.kernels.block_tables import SECTION
+from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, EDGE, PORT, SEGMENT, Network
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import Limit, SystemVoltages, system_voltages
 from tractionpower.model.line import Line
@@ -22,8 +22,9 @@ from tractionpower.supply.characteristics import (
     source_segments,
 )
 from tractionpower.supply.links import link_tables
-from tractionpower.supply.numbering import number_nodes
-from tractionpower.supply.protection import Trigger, find_triggers
+from tractionpower.supply.numbering import find_returning, number_nodes
+from tractionpower.supply.probes import find_probes
+from tractionpower.supply.protection import Trigger, find_triggers, trigger_table
 from tractionpower.supply.span_tables import span_tables
 from tractionpower.supply.topology import Link, RailPlace, Topology
 from tractionpower.supply.wiring import build_topology
@@ -162,8 +163,9 @@ class _Compiler:
         self.substations = tuple(sorted(supply.substations, key=lambda substation: substation.id))
         self.loads = tuple(sorted(supply.loads, key=lambda load: load.id))
         self.find = self.topology.find
-        self.sources = [s for s in self.substations if s.feeds and self._has_return(s)]
-        self.probes = self._probes()
+        self.returning = find_returning(self.topology)
+        self.sources = [s for s in self.substations if s.feeds and s.id in self.returning]
+        self.probes = find_probes(self.topology, self.loads)
         self.nodes = number_nodes(self.topology, self.sources)
         self.structure = self.nodes.structure
         self.edge_rows = [(self.node(a), self.node(b), 1.0 / ohm) for a, b, ohm in self.topology.edges()]
@@ -180,7 +182,7 @@ class _Compiler:
         )  # fmt: skip
         feeding = {source.id for source in self.sources}
         port_of = {substation.id: k for k, substation in enumerate(self.substations) if substation.id in feeding}
-        busbars = [topology.busbars.get(s.id) for s in self.substations]
+        busbars = [topology.busbars[s.id] if s.id in self.returning else None for s in self.substations]
         links, terms = link_tables(topology, self._edge_numbers(), port_of)
         watched = find_triggers(self.supply, topology.links)
         return SupplyTables(
@@ -202,32 +204,11 @@ class _Compiler:
             earth_devices=tuple(item.id for item in topology.earth_links),
             earth_edge=self._earth_edges(),
             watched=watched,
-            triggers=self._triggers(watched),
+            triggers=trigger_table(topology, watched),
             stretches=tuple(self._stretches()),
             train_port=np.arange(len(ports) - len(train_segments), len(ports), dtype=np.int64),
             voltages=self.voltages,
         )
-
-    def _probes(self) -> list[tuple[str, float]]:
-        """Return the places beside each load on the tracks that share its return conductor: the voltage bends there too.
-
-        Where a load stands on that track as close as to share a node, its own voltage is recorded anyway.
-        """
-        topology = self.topology
-        beside = {
-            (track, load.km) for load in self.loads for track in topology.spans[topology.locate(load.track, load.km)[0]].tracks
-        }
-        kms = {track: [load.km for load in self.loads if load.track == track] for track, _ in beside}
-        return sorted(
-            (track, place) for track, place in beside if all(abs(km - place) >= SHARED_NODE_M / 1000.0 for km in kms[track])
-        )
-
-    def _has_return(self, substation: Substation) -> bool:
-        """Tell whether the busbars are in the network and the rails can bring a current back."""
-        busbar, topology = self.topology.busbars.get(substation.id), self.topology
-        if busbar is None:
-            return False
-        return self._wired.find(busbar.negative) in self._wired_rails
 
     # -- nodes ---------------------------------------------------------------------------------------------------
 
@@ -272,25 +253,6 @@ class _Compiler:
             return np.zeros(0, np.int64)
         return np.array([self.node(p.node) if self._is_earthed(p.node) else -1 for p in self.topology.rail_places], np.int64)
 
-    def _triggers(self, watched: Sequence[Trigger]) -> NDArray[np.void]:
-        """Return what the triggers watch; one whose breaker or device has done its work watches nothing."""
-        earth = {item.id: item for item in self.topology.earth_links}
-        places = self.topology.rail_places
-        rows = np.zeros(len(watched), TRIGGER)
-        for row, trigger in zip(rows, watched, strict=True):
-            row["above"], row["delay_s"] = trigger.above, trigger.delay_s
-            if trigger.kind == "overcurrent":
-                row["kind"], row["index"] = OVERCURRENT, trigger.number
-                rests = not self.topology.links[trigger.number].closed
-            else:
-                node = earth[trigger.device].node
-                row["kind"] = RAIL_POTENTIAL
-                row["index"] = next(k for k, place in enumerate(places) if self.find(place.node) == self.find(node))
-                rests = earth[trigger.device].closed
-            if rests:
-                row["above"] = np.inf
-        return rows
-
     def _section_table(self) -> NDArray[np.void]:
         places = self.topology.sections
         live = [self._no_load_v(place.contact) > 0.0 for place in places]
@@ -304,16 +266,25 @@ class _Compiler:
         return np.array(rows, SECTION)
 
     def _stretches(self) -> Iterator[Stretch]:
+        ends = self._span_ends()
         for number, span in enumerate(self.topology.spans):
             first = self.first_conductor[number]
             rail = first + len(span.tracks)
             for contact, track in enumerate(span.tracks):
-                ends = self.topology.axes[track].stretch_m(span.from_km, span.to_km)
-                if ends is not None:
+                from_m, to_m = next(ends[track])
+                if from_m < to_m:
                     volts = self._no_load_v(span.conductors[contact].left)
                     earthed = self._is_earthed(span.rail.left)
                     kms, number_of = (span.from_km, span.to_km), first + contact
-                    yield Stretch(track, *ends, kms, number, number_of, rail, span.length_m, volts, earthed)
+                    yield Stretch(track, from_m, to_m, kms, number, number_of, rail, span.length_m, volts, earthed)
+
+    def _span_ends(self) -> dict[str, Iterator[list[float]]]:
+        """Return the two ends of every span of each track, in the order of the spans [m]."""
+        kms: dict[str, list[tuple[float, float]]] = {}
+        for span in self.topology.spans:
+            for track in span.tracks:
+                kms.setdefault(track, []).append((span.from_km, span.to_km))
+        return {track: iter(self.topology.metres(track, np.array(pairs)).tolist()) for track, pairs in kms.items()}
 
     # -- ports ---------------------------------------------------------------------------------------------------
 

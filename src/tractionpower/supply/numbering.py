@@ -39,6 +39,16 @@ class Numbering:
     earthed: frozenset[int]
 
 
+def find_returning(topology: Topology) -> set[str]:
+    """Return the substations whose busbars are in the network and whose return feeders can bring a current back."""
+    wires = [(c.left, c.right) for span in topology.spans for c in span.conductors]
+    wired = Merger(len(topology.nodes), [(topology.find(a), topology.find(b)) for a, b in wires])
+    for a, b, _ in topology.edges():
+        wired.join(topology.find(a), topology.find(b))
+    rails = {wired.find(topology.find(span.rail.left)) for span in topology.spans}
+    return {name for name, busbar in topology.busbars.items() if wired.find(topology.find(busbar.negative)) in rails}
+
+
 def number_nodes(topology: Topology, sources: Sequence[Substation]) -> Numbering:
     """Give numbers to the nodes of a topology whose sources in service are `sources`, ordered by identifier."""
     find, earth = topology.find, topology.earth

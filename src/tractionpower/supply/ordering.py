@@ -20,23 +20,23 @@ class Structure:
         See `tractionpower.kernels.tables.Network`.
     order
         The nodes in the order of their elimination.
+    places
+        For each column the place of each of its rows in the values.
     """
 
     column_start: NDArray[np.int64]
     row: NDArray[np.int64]
     target: NDArray[np.int64]
     order: list[int]
+    places: list[dict[int, int]]
 
     def place(self, i: int, j: int) -> int:
         """Return the place of entry (i, j) in the values; ground (one past the last node) has a dummy."""
-        n = len(self.order)
-        low, high = min(i, j), max(i, j)
-        if low == high:
-            return low
-        if high == n:
-            return n
-        first, last = self.column_start[low], self.column_start[low + 1]
-        return int(n + 1 + first + np.searchsorted(self.row[first:last], high))
+        if i == j:
+            return i
+        low, high = (i, j) if i < j else (j, i)
+        ground = len(self.order)
+        return ground if high == ground else self.places[low][high]
 
 
 def order_nodes(nodes: int, cliques: Iterable[Iterable[int]]) -> Structure:
@@ -79,6 +79,6 @@ def _number(order: list[int], columns: list[set[int]]) -> Structure:
     starts = np.concatenate([[0], np.cumsum([len(column) for column in rows])]).astype(np.int64)
     flat = np.array([r for column in rows for r in column], dtype=np.int64)
     n = len(order)
-    place = [{r: n + 1 + first + k for k, r in enumerate(column)} for first, column in zip(starts.tolist(), rows, strict=False)]
-    target = [i if i == j else place[i][j] for column in rows for p, i in enumerate(column) for j in column[p:]]
-    return Structure(starts, flat, np.array(target, dtype=np.int64), order)
+    places = [{r: n + 1 + first + k for k, r in enumerate(column)} for first, column in zip(starts.tolist(), rows, strict=False)]
+    target = [i if i == j else places[i][j] for column in rows for p, i in enumerate(column) for j in column[p:]]
+    return Structure(starts, flat, np.array(target, dtype=np.int64), order, places)

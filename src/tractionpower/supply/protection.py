@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.kernels.block_tables import OVERCURRENT, RAIL_POTENTIAL, TRIGGER
 from tractionpower.model.supply import Supply
 from tractionpower.model.switchgear import Protection
-from tractionpower.supply.topology import Link
+from tractionpower.supply.topology import Link, Topology
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +51,21 @@ def find_triggers(supply: Supply, links: Sequence[Link]) -> tuple[Trigger, ...]:
     for device in sorted(supply.voltage_limiting_devices, key=lambda device: device.id):
         found += [Trigger("rail_potential", device.id, -1, point.above_v, point.after_s) for point in device.closes]
     return tuple(found)
+
+
+def trigger_table(topology: Topology, watched: Sequence[Trigger]) -> NDArray[np.void]:
+    """Return what the triggers watch, record array of `TRIGGER`; where breaker or device has done its work: nothing."""
+    earth = {item.id: item for item in topology.earth_links}
+    place_of = {topology.find(place.node): k for k, place in reversed([*enumerate(topology.rail_places)])}
+    rows: list[tuple[int, int, float, float]] = []
+    for trigger in watched:
+        if trigger.kind == "overcurrent":
+            kind, index, rests = OVERCURRENT, trigger.number, not topology.links[trigger.number].closed
+        else:
+            device = earth[trigger.device]
+            kind, index, rests = RAIL_POTENTIAL, place_of[topology.find(device.node)], device.closed
+        rows.append((kind, index, np.inf if rests else trigger.above, trigger.delay_s))
+    return np.array(rows, TRIGGER)
 
 
 def protections(supply: Supply, links: Sequence[Link]) -> dict[str, Protection]:

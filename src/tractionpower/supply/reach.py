@@ -125,9 +125,12 @@ class ContactGraph:
 
     def is_cut(self, place: Place) -> bool:
         """Tell whether the contact line has two sides at a place."""
+        return self.is_separated(place) and len(self.site.line_sides(place)) == 2
+
+    def is_separated(self, place: Place) -> bool:
+        """Tell whether a device that cuts the contact line stands at a place."""
         track, metre = place
-        near = self.near(self.cuts.get(track, []), metre)
-        return near is not None and len(self.site.line_sides(place)) == 2
+        return self.near(self.cuts.get(track, []), metre) is not None
 
     @staticmethod
     def near(metres: list[float], metre: float) -> float | None:
@@ -153,9 +156,10 @@ class ContactGraph:
         """Yield the connections; a contact line that is cut there is joined by feeders only."""
         for index, item in enumerate(self.site.line.connections):
             ends = [self.site.place(end.track, end.km) for end in (item.from_, item.to)]
-            if any(end is None or not self.site.has_contact_line(end) or self.is_cut(end) for end in ends):
+            places = [end for end in ends if end is not None and self.site.has_contact_line(end)]
+            if len(places) < 2 or any(self.is_cut(end) for end in places) or all(self.is_separated(end) for end in places):
                 continue
-            points = [LinePoint(*end) for end in ends if end is not None]
+            points = [LinePoint(*end) for end in places]
             path = f"line.connections[{index}]"
             yield Tie("connection", f"the connection of tracks {item.from_.track} and {item.to.track}", path, 0.0, *points)
 
@@ -164,13 +168,13 @@ class ContactGraph:
         for station in self.site.stations:
             if station.state in TYING:
                 for track, side in self.site.feeders(station):
-                        place = self.site.fed[station.id][track]
-                        index = rows.get((station.id, track, side))
-                        row = None if index is None else self.site.supply.feeders[index]
-                        if row is None or row.state == "closed":
-                            path = f"supply.feeders[{index}]" if row is not None else station_path(station)
-                            name = f"feeder {station.id} {track} {side}"
-                            yield Tie("feeder", name, path, _feeder_ohm(station, row), station.id, LinePoint(*place, side))
+                    place = self.site.fed[station.id][track]
+                    index = rows.get((station.id, track, side))
+                    row = None if index is None else self.site.supply.feeders[index]
+                    if row is None or row.state == "closed":
+                        path = f"supply.feeders[{index}]" if row is not None else station_path(station)
+                        name = f"feeder {station.id} {track} {side}"
+                        yield Tie("feeder", name, path, _feeder_ohm(station, row), station.id, LinePoint(*place, side))
 
     def _switches(self) -> Iterator[Tie]:
         for switch in self.site.supply.switches:

@@ -44,7 +44,9 @@ class ReturnGraph:
         self._stations: dict[str, int] = {}
         self._join_along_tracks()
         for station in site.supply.substations:
-            self._join_station(station.id, [*site.fed[station.id].values()])
+            rows = [row for row in site.supply.feeders if row.at == station.id and row.side == "return" and row.km is not None]
+            moved = {row.track: place for row in rows if row.km is not None and (place := site.place(row.track, row.km))}
+            self._join_station(station.id, [*{**site.fed[station.id], **moved}.values()])
         for item in site.line.connections:
             self._join([self.at(site.place(end.track, end.km)) for end in (item.from_, item.to)])
         for bonds in site.supply.bonds:

@@ -97,7 +97,8 @@ def _fed_places(site: Site, station: Station) -> dict[str, Place]:
     axes = site.axes
     places = {track: (track, axes[track].metre(station.km)) for track in tracks_at(axes, station.km, station.tracks)}
     for row in site.supply.feeders:
-        moved = site.place(row.track, row.km) if row.at == station.id and row.km is not None else None
+        is_moved = row.at == station.id and row.km is not None and row.side != "return"
+        moved = site.place(row.track, row.km) if is_moved and row.km is not None else None
         if moved is not None:
             places[row.track] = moved
     return places

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tractionpower.kernels.spans import LONG_ANGLE, SHORT_ANGLE
 from tractionpower.kernels.tables import CONDUCTOR, NO_SLOT, SPAN
 from tractionpower.supply.ordering import Structure
 from tractionpower.supply.topology import Conductor, Span
@@ -67,7 +68,8 @@ def _whole_element(wire: Conductor, length_m: float) -> tuple[float, float]:
     r, g = wire.ohm_per_m, wire.siemens_per_m
     if r == 0.0:
         return 0.0, 0.5 * g * length_m
-    if g == 0.0:
-        return 1.0 / (r * length_m), 0.0
-    z, angle = math.sqrt(r / g), math.sqrt(r * g) * length_m
-    return 1.0 / (z * math.sinh(angle)), math.tanh(0.5 * angle) / z
+    angle = math.sqrt(r * g) * length_m
+    if angle < SHORT_ANGLE:
+        return 1.0 / (r * length_m), 0.5 * g * length_m
+    z = math.sqrt(r / g)
+    return 1.0 / (z * math.sinh(min(angle, LONG_ANGLE))), math.tanh(0.5 * angle) / z

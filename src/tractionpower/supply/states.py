@@ -84,7 +84,7 @@ def _feeder(supply: Supply, device: str) -> Feeder | None:
     if len(words) != 3 or words[2] not in ("low_km", "high_km"):
         return None
     stations: tuple[Substation | SectionCabin, ...] = (*supply.substations, *supply.section_cabins)
-    if all(station.id != words[0] for station in stations):
+    if not words[1] or all(station.id != words[0] for station in stations):
         return None
     feeder = Feeder.model_validate({"at": words[0], "track": words[1], "side": words[2]})
     assert feeder.id == feeder_id(*words)

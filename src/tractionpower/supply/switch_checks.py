@@ -49,6 +49,7 @@ def _check_feeder(site: Site, path: str, row: Feeder, station: Station) -> list[
         problems.append(Problem("feeder_track", f"{path}.track", found, f"tracks: {own}", remedy))
     if row.side == "return":
         problems += _check_return_feeder(path, row, station)
+        place = place if row.km is None else site.place(row.track, row.km)
         if place is not None and not site.rail_rows(place):
             found = f"track {row.track} has no return circuit at km {name_km(site.axes[row.track].km(place[1]))}"
             problems.append(Problem("no_return_circuit", path, found, remedy="correct the row, or add one to return_circuit"))

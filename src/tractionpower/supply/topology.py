@@ -11,6 +11,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tractionpower.alignment.axis import TrackAxis, compile_axes
 from tractionpower.model.conductors import Conductor as ConductorRow
 from tractionpower.model.line import Line
@@ -183,9 +186,14 @@ class Topology:
 
     def distance_m(self, track: str, from_km: float, to_km: float) -> float:
         """Return the way along `track` from one kilometre to another [m]; its ends may be missed by a shared node."""
+        first, last = self.metres(track, [from_km, to_km])
+        return float(last - first)
+
+    def metres(self, track: str, kms: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the distances of kilometres from the start of `track` [m]; those beyond its ends count as its ends."""
         axis = self.axes[track]
-        first, last = (min(max(km, axis.from_km), axis.to_km) for km in (from_km, to_km))
-        return float(axis.metre(last) - axis.metre(first))
+        places: NDArray[np.float64] = np.clip(np.asarray(kms, float), axis.from_km, axis.to_km)
+        return axis.metre(places)
 
     @cached_property
     def _spans_of(self) -> dict[str, tuple[list[float], list[int]]]:
@@ -230,21 +238,25 @@ def lay_spans(supply: Supply, line: Line, conductors: Sequence[ConductorRow], cu
     topology = Topology(axes, find_bundles(supply, line, axes, conductors))
     for bundle in topology.bundles:
         bundle.cut_at(km for track, km in cuts if track in bundle.tracks)
+        length = _piece_lengths(topology, bundle)
         for piece in range(len(bundle.contacts)):
             for rails in bundle.rails[piece]:
-                _add_span(topology, bundle, piece, rails)
+                _add_span(topology, bundle, piece, rails, length[rails.tracks[0]][piece])
         for cut in range(len(bundle.cuts)):
             for track in bundle.tracks:
                 nodes = [topology.nodes("rail", rails.number, bundle.tracks, cut) for rails in bundle.rails_at(track, cut)]
                 topology.joins += [(nodes[0], node) for node in nodes[1:] if node != nodes[0]]
-    _note_rail_places(topology)
+        _note_rail_places(topology, bundle, length)
     return topology
 
 
-def _add_span(topology: Topology, bundle: Bundle, piece: int, rails: Rails) -> None:
-    nodes, (low, high) = topology.nodes, bundle.pieces[piece]
-    length = topology.distance_m(rails.tracks[0], low, high)
-    contacts = bundle.contacts[piece]
+def _piece_lengths(topology: Topology, bundle: Bundle) -> dict[str, list[float]]:
+    """Return the lengths of the pieces between the cuts along each track of a bundle [m]."""
+    return {track: np.diff(topology.metres(track, bundle.cuts)).tolist() for track in bundle.tracks}
+
+
+def _add_span(topology: Topology, bundle: Bundle, piece: int, rails: Rails, length: float) -> None:
+    nodes, contacts = topology.nodes, bundle.contacts[piece]
     tracks = tuple(track for track in rails.tracks if track in contacts)
     conductors = [Conductor(contacts[track], 0.0, nodes(HIGH, track, piece), nodes(LOW, track, piece + 1)) for track in tracks]
     left, right = (nodes("rail", rails.number, bundle.tracks, cut) for cut in (piece, piece + 1))
@@ -254,21 +266,18 @@ def _add_span(topology: Topology, bundle: Bundle, piece: int, rails: Rails) -> N
     if rails.siemens_per_m > 0.0:
         nodes(EARTH)
     conductors.append(Conductor(0.0 if short else rails.ohm_per_m, rails.siemens_per_m, left, right))
-    topology.spans.append(Span(low, high, length, tuple(conductors), tracks))
+    topology.spans.append(Span(*bundle.pieces[piece], length, tuple(conductors), tracks))
 
 
-def _note_rail_places(topology: Topology) -> None:
-    for bundle in topology.bundles:
-        last = len(bundle.cuts) - 1
-        for cut, km in enumerate(bundle.cuts):
-            beside: dict[int, Rails] = {}
-            length: dict[int, float] = {}
-            for piece in (cut - 1, cut):
-                for rails in bundle.rails[piece] if 0 <= piece < last else ():
-                    beside.setdefault(rails.number, rails)
-                    way = topology.distance_m(rails.tracks[0], *bundle.pieces[piece])
-                    length[rails.number] = length.get(rails.number, 0.0) + 0.5 * way
-            for number, rails in sorted(beside.items()):
-                node = topology.nodes("rail", number, bundle.tracks, cut)
-                place = RailPlace(" ".join(rails.tracks), km, rails.siemens_per_m, length[number], node)
-                topology.rail_places.append(place)
+def _note_rail_places(topology: Topology, bundle: Bundle, length: dict[str, list[float]]) -> None:
+    last = len(bundle.cuts) - 1
+    for cut, km in enumerate(bundle.cuts):
+        beside: dict[int, Rails] = {}
+        around: dict[int, float] = {}
+        for piece in (cut - 1, cut):
+            for rails in bundle.rails[piece] if 0 <= piece < last else ():
+                beside.setdefault(rails.number, rails)
+                around[rails.number] = around.get(rails.number, 0.0) + 0.5 * length[rails.tracks[0]][piece]
+        for number, rails in sorted(beside.items()):
+            node = topology.nodes("rail", number, bundle.tracks, cut)
+            topology.rail_places.append(RailPlace(" ".join(rails.tracks), km, rails.siemens_per_m, around[number], node))

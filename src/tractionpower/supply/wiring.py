@@ -35,6 +35,7 @@ class _Wiring:
         for row in sorted(supply.feeders, key=lambda row: row.id):
             self.rows.setdefault(row.at, []).append(row)
         self.feeds = {station.id: self._fed_places(station) for station in self.stations}
+        self.drains = {station.id: self._drained_places(station) for station in self.substations}
         self.bonds = [*self._bond_places()]
 
     def build(self) -> Topology:
@@ -55,10 +56,18 @@ class _Wiring:
     # -- places ---------------------------------------------------------------------------------------------------
 
     def _fed_places(self, station: Station) -> dict[str, float]:
-        """Return the kilometre at which a station meets each of its tracks."""
+        """Return the kilometre at which a station meets the contact line of each of its tracks."""
         places = dict.fromkeys(tracks_at(self.axes, station.km, station.tracks), station.km)
         for row in self.rows.get(station.id, ()):
-            if row.km is not None and row.track in self.axes:
+            if row.km is not None and row.track in self.axes and row.side != "return":
+                places[row.track] = row.km
+        return dict(sorted(places.items()))
+
+    def _drained_places(self, station: Substation) -> dict[str, float]:
+        """Return the kilometre at which a substation meets the rails of each of its tracks: where it feeds, if no row says."""
+        places = dict(self.feeds[station.id])
+        for row in self.rows.get(station.id, ()):
+            if row.km is not None and row.track in self.axes and row.side == "return":
                 places[row.track] = row.km
         return dict(sorted(places.items()))
 
@@ -72,8 +81,8 @@ class _Wiring:
     def _places(self) -> Iterator[tuple[str, float]]:
         """Yield the places of all devices."""
         supply = self.supply
-        for feeds in self.feeds.values():
-            yield from feeds.items()
+        for places in (*self.feeds.values(), *self.drains.values()):
+            yield from places.items()
         for point in supply.section_points:
             yield point.track, point.km
         for switch in supply.switches:
@@ -108,18 +117,21 @@ class _Wiring:
     def _find_cut_sides(self) -> None:
         """Find where contact lines are cut, and where they may be cut in another state."""
         self.separated: set[tuple[str, int]] = set()
+        self.isolated: set[tuple[str, int]] = set()  # cut, and not by feeders that join both sides
         self.separable: set[tuple[str, int]] = set()
         for station in self.stations:
             for track, km in self.feeds[station.id].items():
-                self._separate(track, km, station.state != "bypassed")
+                self._separate(track, km, station.state != "bypassed", station.state == "open")
         for point in self.supply.section_points:
-            self._separate(point.track, point.km, point.state == "open")
+            self._separate(point.track, point.km, point.state == "open", point.state == "open")
 
-    def _separate(self, track: str, km: float, now: bool) -> None:
+    def _separate(self, track: str, km: float, now: bool, isolates: bool) -> None:
         place = track, self._cut(track, km)[1]
         self.separable.add(place)
         if now:
             self.separated.add(place)
+        if isolates:
+            self.isolated.add(place)
 
     def _join_contact_lines(self) -> None:
         for bundle in self.topology.bundles:
@@ -160,7 +172,7 @@ class _Wiring:
             self.joins.append((common, negative))
         else:
             self.topology.returns.append((common, negative, station.return_resistance_ohm))
-        for track, km in self.feeds[station.id].items():
+        for track, km in self.drains[station.id].items():
             rail, row = self._rails(track, km), rows.get((track, "return"))
             if rail is None:
                 continue
@@ -195,12 +207,18 @@ class _Wiring:
             if rails[0] is not None and rails[1] is not None:
                 self.joins.append((rails[0], rails[1]))
             sides = [[*self._sides(*end).values()] for end in ends]
-            is_cut = any(
-                (track, self._cut(track, km)[1]) in self.separated and len(found) > 1
-                for (track, km), found in zip(ends, sides, strict=True)
-            )
-            if all(sides) and not is_cut:
+            if all(sides) and not self._is_cut(ends, sides):
                 self.joins.append((sides[0][0], sides[1][0]))
+
+    def _is_cut(self, ends: list[tuple[str, float]], sides: list[list[int]]) -> bool:
+        """Tell whether a device cuts the contact line at a connection: on the way of a track, or between two ends of tracks.
+
+        A substation or cabin that ties one end only has its feeder to both; what is open there separates them.
+        """
+        places = [(track, self._cut(track, km)[1]) for track, km in ends]
+        separated = [place in self.separated for place in places]
+        on_the_way = any(cut and len(found) > 1 for cut, found in zip(separated, sides, strict=True))
+        return on_the_way or all(separated) or not self.isolated.isdisjoint(places)
 
     def _add_bonds(self) -> None:
         for km, tracks, ohm in self.bonds:
