@@ -75,7 +75,8 @@ PHASE = {
     "dwelling": "stands at a stop, or at the end of its route",
     "waiting": "is not on the line yet at the start of the step",
     "holding": "stands on its way, as its effort does not move it",
-    "unpowered": "gets no traction, for instance below U_min2 or with an open undervoltage relay",
+    "unpowered": "wishes to pull and gets no traction: below U_min2, with an open undervoltage relay, where the power is off, "
+    "on a dead line, at a stop even that it cannot leave",
 }
 LIMIT = {
     "nothing": "the driver gets the starting effort, or wishes none",
@@ -84,7 +85,10 @@ LIMIT = {
     "drive": "power or characteristic of the drive",
     "line_current": "largest train current of the line (`line.train_current_limits`)",
     "train_current": "largest current of the train itself",
-    "voltage": "the voltage: current limit below the knee, power over voltage, natural curve of series motors below U_n",
+    "voltage": "the voltage: current limit below the knee, power over voltage, natural curve of series motors below U_n, "
+    "a dead line",
+    "power_off": "a stretch of `line.power_off`, in all of the step or a part of it",
+    "standstill_current": "largest current at standstill (`line.train_current_limits`), which cuts heating, then auxiliaries",
 }
 EVENTS = {
     "train_entered": ("a train comes onto the line", "", ""),
@@ -94,10 +98,12 @@ EVENTS = {
     "low_voltage": ("spell of a train below U_min2", "lowest voltage [V]", "U_min2"),
     "high_voltage": ("spell of a train above U_max2", "highest voltage [V]", "U_max2"),
     "current_limited": (
-        "spell of a train whose effort is cut by voltage, line current or train current",
+        "spell of a train whose effort is cut by voltage, line current or train current, or at standstill its auxiliaries",
         "lowest voltage [V]",
         "",
     ),
+    "voltage_lost": ("a train comes onto a dead line, or the line goes dead", "", ""),
+    "voltage_back": ("its line has voltage again", "time without [s]", ""),
     "regrouped": ("series motors change their grouping", "motors in series after", "before"),
     "substation_blocked": ("spell in which the rectifiers block", "highest voltage of the busbar [V]", "no-load voltage"),
     "not_servable": ("spell in which all demand had to be cut (`limits: none`)", "smallest share that can be served", "1"),

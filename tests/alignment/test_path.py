@@ -13,6 +13,7 @@ from tractionpower.model.line import (
     CurveResistance,
     Gradient,
     Line,
+    PowerOff,
     SpeedLimit,
     Track,
     TrainCurrentLimit,
@@ -199,6 +200,18 @@ def test_train_currents_by_hand():
     assert path.current_from_m.tolist() == [0.0, 3000.0, 6000.0, 7000.0]
     assert path.max_current_a.tolist() == [np.inf, 2000.0, 2000.0, 3000.0]
     assert path.standstill_current_a.tolist() == [np.inf, 100.0, 200.0, 200.0]
+
+
+def test_stretches_without_power_by_hand():
+    rows = (
+        PowerOff(from_km=8.0, to_km=8.03, kind="neutral"),
+        PowerOff(from_km=9.0, to_km=12.0, kind="coast", tracks=("1",)),
+        PowerOff(from_km=10.0, to_km=11.0, kind="lower_pantograph"),
+    )
+    path = compiled(("1", 15.0, 5.0), power_off=rows)
+    assert path.power_from_m.tolist() == pytest.approx([0.0, 3000.0, 4000.0, 5000.0, 6000.0, 6970.0, 7000.0])
+    assert path.power_kind.tolist() == [0, 1, 2, 1, 0, 2, 0]
+    assert compiled(("2", 15.0, 5.0), power_off=rows).power_kind.tolist() == [0, 2, 0, 2, 0]
 
 
 row_of_a_limit = st.builds(

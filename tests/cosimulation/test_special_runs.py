@@ -295,3 +295,89 @@ def test_falling_kilometres_and_two_legs():
         assert len(here) > 50
         np.testing.assert_allclose(feeders.loc[here.index, track], here["current_a"], rtol=1e-3, atol=0.05)
     assert close(results)
+
+
+# --- where trains may not pull
+
+
+def out(begin, end):
+    """Return events that take both substations out of service for a time."""
+    return [
+        {"time": time, "device": name, "state": state}
+        for name in "AB"
+        for time, state in ((begin, "rectifiers_out"), (end, "in_service"))
+    ]
+
+
+@pytest.mark.parametrize("kind", ["inverter", "series_motors", "table"])
+def test_a_train_loses_its_voltage_and_gets_it_back(kind):
+    braked = vehicle(kind, kind, brake={"service_rate_mps2": 0.5})
+    calls = [{"station": "Q"}, {"station": "B"}]
+    results, rows = tables_of(
+        couple(
+            run("E", kind, low=2.0, calls=calls),
+            vehicles=[braked],
+            switch_events=out(200.0, 400.0),
+            coast_without_voltage_s=60.0,
+            end_s=1400.0,
+        )
+    )
+    dark = rows[(rows["time_s"] >= 200.0) & (rows["time_s"] < 400.0)]
+    for name in ("voltage_v", "current_a", "power_kw", "auxiliary_power_kw", "tractive_force_kn"):
+        np.testing.assert_array_equal(dark[name], 0.0)
+    braking = dark[dark["phase"] == "braking"]
+    assert braking["time_s"].iloc[0] == 260.0
+    stands = dark[dark["speed_kmh"] == 0.0]
+    assert len(stands) > 50
+    assert set(stands["phase"]) == {"unpowered"}
+    assert set(stands["limited_by"]) == {"voltage"}
+    after = rows[rows["time_s"] >= 400.0]
+    assert after["speed_kmh"].iloc[10] > 5.0
+    assert after["voltage_v"].min() > 2000.0
+    told = results.table("events").query("subject == 'E'")
+    (lost,) = told.query("kind == 'voltage_lost'").to_dict("records")
+    (back,) = told.query("kind == 'voltage_back'").to_dict("records")
+    assert (lost["time_s"], back["time_s"], back["value"]) == (200.0, 400.0, 200.0)
+    assert (lost["track"], lost["position_km"]) == ("1", pytest.approx(dark["position_km"].iloc[0]))
+    assert told.query("kind == 'stop'")["message"].tolist() == ["stops at Q", "stops at B"]  # the forced stand is no call
+    assert close(results)
+    assert results.run["status"] == "complete"
+
+
+def test_a_run_with_lost_voltage_and_stretches_without_power_may_be_cut_anywhere(monkeypatch):
+    power_off = [{"from_km": 3.0, "to_km": 3.05, "kind": "neutral"}, {"from_km": 8.0, "to_km": 9.0, "kind": "coast"}]
+    scenario = couple(*MIXED, power_off=power_off, switch_events=out(150.3, 240.0), coast_without_voltage_s=33.3, end_s=500.0)
+    whole, _, _ = run_in_memory(scenario)
+    assert whole.table("events")["kind"].isin(["voltage_lost"]).sum() >= 4
+    monkeypatch.setattr(run_module, "BUFFER_BYTES", 1)
+    monkeypatch.setattr(run_module, "FIRST_BLOCK", 1)
+    pieces, _, _ = run_in_memory(scenario)
+    for name in whole.tables:
+        pd.testing.assert_frame_equal(pieces.table(name), whole.table(name), check_exact=True)
+    assert pieces.key_figures == whole.key_figures
+
+
+def test_the_table_says_where_the_power_is_off():
+    power_off = [{"from_km": 3.0, "to_km": 3.4, "kind": "neutral"}, {"from_km": 5.0, "to_km": 5.03, "kind": "coast"}]
+    results, rows = tables_of(couple(run("E"), power_off=power_off, end_s=400.0))
+    inside = rows[(rows["position_km"] >= 3.0) & (rows["position_km"] + rows["speed_kmh"] / 3600.0 < 3.4)]
+    assert len(inside) > 5
+    np.testing.assert_allclose(inside["power_kw"], 0.0, atol=1e-6)
+    assert inside["voltage_v"].min() > 3400.0  # of the line
+    said = rows[rows["limited_by"] == "power_off"]["position_km"]
+    assert said.between(2.96, 3.4).sum() >= len(inside)
+    assert said.between(4.96, 5.03).sum() >= 1  # shorter than the way of a step
+    np.testing.assert_allclose(rows["voltage_v"] * rows["current_a"] / 1e3, rows["power_kw"], rtol=1e-5, atol=1e-3)
+    assert close(results)
+
+
+def test_a_cut_at_standstill_is_told():
+    limit = {"from_km": 0.0, "to_km": 20.0, "max_current_a": 900.0, "standstill_current_a": 20.0}
+    calls = [{"station": "P", "min_dwell_s": 60.0}]
+    results, rows = tables_of(couple(run("E", calls=calls), train_current_limits=[limit], end_s=450.0))
+    stands = rows[rows["phase"] == "dwelling"].iloc[1:-1]
+    np.testing.assert_allclose(stands["current_a"], 20.0, rtol=1e-5)
+    assert set(stands["limited_by"]) == {"standstill_current"}
+    messages = results.table("events").query("kind == 'current_limited'")["message"].tolist()
+    assert any("auxiliaries limited by standstill current" in message for message in messages)
+    assert any("tractive effort limited by line current" in message for message in messages)

@@ -294,12 +294,25 @@ def test_a_route_without_contact_line_is_told_once_for_all_runs():
     assert "from km 3.5 to km 2" in only(back).found
 
 
-def test_stretches_without_current_are_told_not_to_be_heeded():
-    scenario = study()
-    row = {"from_km": 1.0, "to_km": 1.1, "kind": "neutral"}
-    line = type(scenario.line).model_validate(scenario.line.model_dump(by_alias=True) | {"power_off": [row]})
-    found = only(scenario.model_copy(update={"line": line}))
-    assert (found.code, found.path, found.severity) == ("power_off_unused", "line.power_off", "warning")
+def without_power(low, high, **more):
+    return study(power_off=[{"from_km": low, "to_km": high, "kind": "neutral"}], **more)
+
+
+def test_a_stop_in_a_stretch_without_power_is_doubtful():
+    calls = [call("A", departure="00:01:00"), call("B", min_dwell_s=20.0), call("C")]
+    found = only(without_power(3.9, 4.0 + 1e-6, calls=calls))
+    assert (found.code, found.path, found.severity) == ("stop_without_power", RUN, "warning")
+    assert "stops at B, on track 1 at km 4," in found.found
+    assert "starts from rest" in only(without_power(-0.5, 0.3)).found
+    assert "stops at A" in only(without_power(-0.5, 0.3, calls=calls)).found
+
+
+def test_stops_beside_such_a_stretch_and_ends_in_it_are_in_order():
+    calls = [call("A", departure="00:01:00"), call("B", min_dwell_s=20.0), call("C")]
+    for low, high in ((1.0, 2.0), (3.0, 4.0), (7.9, 8.1)):
+        assert check_movement(without_power(low, high, calls=calls)) == []
+    assert check_movement(without_power(3.0, 5.0, calls=[passing("B")])) == []
+    assert check_movement(without_power(-0.5, 0.3, speed_kmh=50.0)) == []
 
 
 # --- start -------------------------------------------------------------------------------------------------------

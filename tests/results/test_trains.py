@@ -75,13 +75,13 @@ def test_the_rail_potential_is_empty_where_no_earth_is_defined(rows):
 
 def test_every_code_has_its_name_in_the_contract(rows):
     phases = "accelerating cruising coasting braking dwelling waiting holding unpowered".split()
-    limits = "nothing speed adhesion drive line_current train_current voltage".split()
+    limits = "nothing speed adhesion drive line_current train_current voltage power_off standstill_current".split()
     assert (list(PHASES), list(LIMITED_BY)) == (phases, limits)
-    many = np.repeat(rows[:1], 8)
-    many["phase"], many["limited_by"] = np.arange(8), np.minimum(np.arange(8), 6)
-    found = trains_table(many, ([0] * 8, ["7"]), ([0] * 8, ["1"]), np.zeros(8)).to_pylist()
-    assert [row["phase"] for row in found] == phases
-    assert [row["limited_by"] for row in found][:7] == limits
+    many = np.repeat(rows[:1], 9)
+    many["phase"], many["limited_by"] = np.arange(9) % 8, np.arange(9)
+    found = trains_table(many, ([0] * 9, ["7"]), ([0] * 9, ["1"]), np.zeros(9)).to_pylist()
+    assert [row["phase"] for row in found][:8] == phases
+    assert [row["limited_by"] for row in found] == limits
 
 
 def test_calls_say_how_late_a_train_is_and_leave_empty_what_is_not_known():

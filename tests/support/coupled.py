@@ -58,7 +58,7 @@ def couple(*runs: dict[str, Any], end_s: float = 600.0, step_s: float = 1.0, **m
         "return_circuit": [whole | {"resistance_ohm_per_km": 0.01}],
     }
     vehicles = more.pop("vehicles", [vehicle(kind, kind) for kind in ("inverter", "series_motors", "table")])
-    outer = {key: more.pop(key) for key in ("coupling", "coupling_voltage_v", "output") if key in more}
+    outer = {key: more.pop(key) for key in ("coupling", "coupling_voltage_v", "output", "coast_without_voltage_s") if key in more}
     return Scenario.model_validate(
         {
             "line": line | {key: more.pop(key) for key in list(more) if key in Line.model_fields},

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 from coupled import vehicle
-from random_trains import random_rows
+from random_trains import random_power_off, random_rows
 from small_trains import BRAKE, INVERTER, SERIES_MOTORS, TABLE
 
 from tractionpower.io.limits_files import shipped_limits
@@ -37,6 +37,7 @@ class RandomCoupling:
         end = self.start + steps * self.step_s
         vehicles = [self._vehicle(k) for k in range(rng.integers(1, 5))]
         runs = [self._run(k, [str(each["id"]) for each in vehicles]) for k in range(rng.integers(2, 7))]
+        self.more = np.random.default_rng((8, seed))  # what came later: the other draws stay as they were
         used = sorted({str(run["train"]) for run in runs})
         vehicles = [each for each in vehicles if each["id"] in used]
         self.scenario = Scenario.model_validate(
@@ -48,6 +49,7 @@ class RandomCoupling:
                 "trains": [self._train(each["id"]) for each in vehicles],
                 "vehicles": vehicles,
                 "limits": shipped_limits(),
+                "coast_without_voltage_s": float(self.more.choice([0.0, 7.3, 60.0, 120.0])),
             }
         )
 
@@ -76,6 +78,11 @@ class RandomCoupling:
         if self.chance(0.3):
             limit = {"max_current_a": self.among(300.0, 900.0), "standstill_current_a": self.among(20.0, 200.0)}
             line["train_current_limits"] = [{"from_km": low, "to_km": high + 0.2} | limit]
+        if self.more.random() < 0.4:
+            line["power_off"] = random_power_off(self.more, length)
+        if self.more.random() < 0.2:  # so low that auxiliaries are cut
+            limit = {"max_current_a": 400.0, "standstill_current_a": round(float(self.more.uniform(2.0, 60.0)), 1)}
+            line["train_current_limits"] = [*line.get("train_current_limits", []), ends | limit]
         return line
 
     def _supply(self) -> Row:
@@ -95,6 +102,12 @@ class RandomCoupling:
             "return_circuit": returns,
             "loads": [self._load(k) for k in range(rng.integers(0, 4))] if self.chance(0.4) else [],
         }
+        if self.more.random() < 0.25:  # a stretch of one track that nothing feeds, unless a substation or cabin stands there
+            low = round(float(self.more.uniform(0.5, length - 1.0)), 3)
+            places = (low, round(low + float(self.more.uniform(0.05, 3.0)), 3))
+            track = str(self.more.choice(self.tracks))
+            points = [{"id": f"X{n}", "track": track, "km": km, "state": "open"} for n, km in enumerate(places)]
+            supply["section_points"] = [point for point in points if point["km"] < length]
         if len(self.tracks) > 1 and self.chance(0.7):
             state = str(rng.choice(["closed", "closed", "bypassed"]))
             supply["section_cabins"] = [{"id": "C", "km": self.among(0.0, length), "state": state}]

@@ -18,6 +18,17 @@ def random_rows(rng: np.random.Generator, length_km: float, count: int, values: 
     return [(low, high, float(values())) for low, high in itertools.pairwise(edges)]
 
 
+def random_power_off(rng: np.random.Generator, length_km: float) -> list[dict[str, Any]]:
+    """Return up to four stretches without power, from 20 m to a kilometre long, which may meet or overlap."""
+    starts = np.round(rng.uniform(0.3, length_km, int(rng.integers(1, 5))), 3).tolist()
+    lengths = np.round(np.exp(rng.uniform(np.log(0.02), 0.0, len(starts))), 3).tolist()
+    kinds = rng.choice(["neutral", "coast", "lower_pantograph"], len(starts)).tolist()
+    return [
+        {"from_km": low, "to_km": round(low + long, 3), "kind": kind}
+        for low, long, kind in zip(starts, lengths, kinds, strict=True)
+    ]
+
+
 def random_study(seed: int, kind: str | None = None, **more: Any) -> Scenario:
     """Return one train on a hilly line of 4 to 12 km with limits, curves, tunnels, stops, and current limits."""
     rng = np.random.default_rng(seed)
@@ -58,4 +69,6 @@ def random_study(seed: int, kind: str | None = None, **more: Any) -> Scenario:
         plain["train_current_limits"] = [
             {"from_km": low_km, "to_km": high_km + 0.2, "max_current_a": 700.0, "standstill_current_a": 200.0}
         ]
+    if seed % 2:
+        plain["power_off"] = random_power_off(np.random.default_rng((1, seed)), length)
     return make_trains(length, **plain | more)

@@ -102,7 +102,7 @@ def make_trains(length_km: float = 10.0, **more: Any) -> Scenario:
     run = {key: more.pop(key) for key in RUN_KEYS if key in more}
     train = {key: more.pop(key) for key in TRAIN_KEYS if key in more}
     runs = more.pop("runs", None) or [make_run("x", length_km, **run)]
-    outer = {key: more.pop(key) for key in ("clock",) if key in more}
+    outer = {key: more.pop(key) for key in ("clock", "coast_without_voltage_s") if key in more}
     vehicles = more.pop("all_vehicles", None) or [VEHICLE | more]
     return Scenario.model_validate(
         {
@@ -112,16 +112,18 @@ def make_trains(length_km: float = 10.0, **more: Any) -> Scenario:
                 "contact_lines": [{"from_km": -1.0, "to_km": length_km + 1.0, "resistance_ohm_per_km": 0.05}],
                 "return_circuit": [{"from_km": -1.0, "to_km": length_km + 1.0, "resistance_ohm_per_km": 0.01}],
             },
-            "clock": {"start": 0.0, "end": 3600.0, "step_s": 1.0} | outer.get("clock", {}),
+            "clock": {"start": 0.0, "end": 3600.0, "step_s": 1.0} | outer.pop("clock", {}),
             "timetable": {"trains": runs},
             "trains": [{"id": "t", "vehicles": [{"id": "car"}]} | train],
             "vehicles": vehicles,
             "limits": shipped_limits(),
+            **outer,
         }
     )
 
 
 LINE_KEYS = ("limits", "slopes", "stations", "curves", "tunnels", "train_current_limits", "curve_resistance", "tracks")
+LINE_KEYS += ("power_off",)
 RUN_KEYS = ("time", "speed_kmh", "end", "calls", "backwards")
 TRAIN_KEYS = ("mass_distribution", "vehicles")
 

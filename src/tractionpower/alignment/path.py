@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tractionpower.alignment.axis import Metres, TrackAxis
 from tractionpower.alignment.profile import Limits, PathLeg, compile_profile, cut_up, join_equal, lay_rows, paint
+from tractionpower.kernels.train_tables import COASTS, DARK, POWERED
 from tractionpower.model.line import Line
 from tractionpower.model.timetable import Leg
 
@@ -43,6 +44,9 @@ class RoutePath:
     current_from_m, max_current_a, standstill_current_a
         Largest train currents of the line in motion and at standstill [A], infinite where it gives none, and where each
         begins to hold [m], the first at 0.
+    power_from_m, power_kind
+        What the front of a train may take, one of `POWERED`, `COASTS`, `DARK`, and where each begins to hold [m], the first
+        at 0.
     """
 
     legs: tuple[PathLeg, ...]
@@ -57,6 +61,8 @@ class RoutePath:
     current_from_m: Metres
     max_current_a: Metres
     standstill_current_a: Metres
+    power_from_m: Metres
+    power_kind: NDArray[np.intp]
 
     def place(self, s: float) -> tuple[str, float]:
         """Return track and kilometre at the distance `s` [m]; where two legs meet, those of the second."""
@@ -113,7 +119,7 @@ def compile_path(
     length_m = legs[-1].end_m
     profile = compile_profile(line, (*_behind(legs[0], behind_m), *legs), -behind_m, length_m)
     limits = _speed_limits(line, legs, category)
-    currents = _current_limits(line, legs)
+    currents, power = _current_limits(line, legs), _power_off(line, legs)
     return RoutePath(
         legs,
         length_m,
@@ -123,6 +129,8 @@ def compile_path(
         current_from_m=currents.from_m,
         max_current_a=currents.values[:, 0],
         standstill_current_a=currents.values[:, 1],
+        power_from_m=power.from_m,
+        power_kind=power.values[:, 0].astype(np.intp),
     )
 
 
@@ -171,3 +179,13 @@ def _current_limits(line: Line, legs: Sequence[PathLeg]) -> Limits:
     edges, first, last = cut_up(0.0, legs[-1].end_m, laid)
     columns = [paint(len(edges) - 1, first, last, column[laid.row], np.inf) for column in amps]
     return join_equal(edges[:-1], np.stack(columns, axis=1))
+
+
+def _power_off(line: Line, legs: Sequence[PathLeg]) -> Limits:
+    """Return what trains may take along the route; where two rows lie, what takes more away."""
+    rows = line.power_off
+    kinds = np.array([COASTS if row.kind == "coast" else DARK for row in rows], float)
+    laid = lay_rows(rows, legs)
+    edges, first, last = cut_up(0.0, legs[-1].end_m, laid)
+    painted = -paint(len(edges) - 1, first, last, -kinds[laid.row], -float(POWERED))  # the lowest value wins
+    return join_equal(edges[:-1], painted[:, None])

@@ -153,6 +153,10 @@ def _tripped(row: dict[str, Any]) -> str:
     return f"{told}; closes by itself after {row['again_s']:g} s (number {row['number']})"
 
 
+def _what_is_cut(reasons: Sequence[str]) -> str:
+    return "auxiliaries" if set(reasons) == {"standstill_current"} else "tractive effort"
+
+
 _TOLD: dict[str, Callable[[dict[str, Any]], str]] = {
     "not_servable": _not_servable,
     "not_converged": lambda row: (
@@ -164,8 +168,11 @@ _TOLD: dict[str, Callable[[dict[str, Any]], str]] = {
     "low_voltage": lambda row: f"{_spell(row)}: down to {row['value']:.1f} V, below {row['limit']:g} V",
     "high_voltage": lambda row: f"{_spell(row)}: up to {row['value']:.1f} V, above {row['limit']:g} V",
     "current_limited": lambda row: (
-        f"{_spell(row)}: tractive effort limited by {row['reason'].replace('_', ' ')}, down to {row['value']:.1f} V"
+        f"{_spell(row)}: {_what_is_cut(row['reasons'])} limited by {' and '.join(row['reasons']).replace('_', ' ')},"
+        f" down to {row['value']:.1f} V"
     ),
+    "voltage_lost": lambda row: "the contact line is dead: neither traction nor auxiliaries",
+    "voltage_back": lambda row: f"the contact line has voltage again, after {row['value']:g} s",
     "regrouped": lambda row: f"{row['limit']:g} motors in series become {row['value']:g}",
     "train_entered": lambda row: "comes onto the line",
     "train_left": lambda row: "leaves the line",

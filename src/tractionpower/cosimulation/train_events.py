@@ -1,4 +1,4 @@
-"""Events of trains: entered and left, stops and departures, spells of low voltage and limited current, groupings."""
+"""Events of trains: entered and left, stops and departures, voltage lost and back, spells of low voltage and cut effort."""
 
 from __future__ import annotations
 
@@ -9,7 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.cosimulation.places import Places
-from tractionpower.kernels.train_tables import BY_LINE_CURRENT, BY_TRAIN_CURRENT, BY_VOLTAGE, LIMITED_BY
+from tractionpower.kernels.train_tables import (
+    BY_LINE_CURRENT,
+    BY_STANDSTILL_CURRENT,
+    BY_TRAIN_CURRENT,
+    BY_VOLTAGE,
+    LIMITED_BY,
+)
 from tractionpower.model.limits import SystemVoltages
 from tractionpower.results.spells import TOLERANCE_V
 
@@ -40,6 +46,7 @@ class TrainEvents:
         self.rows: list[Row] = []
         self._open: defaultdict[str, dict[int, Row]] = defaultdict(dict)
         self._grouping: dict[int, int] = {}
+        self._lost_s: dict[int, float] = {}
 
     def add(self, rows: Rows) -> None:
         """Look at rows of trains, ordered by time."""
@@ -47,11 +54,13 @@ class TrainEvents:
         names = ("train", "time_s", "s_m", "voltage_v", "limited_by", "traction_n", "wished_n", "grouping")
         columns = {name: rows[name][order] for name in names}
         volts, low, high = columns["voltage_v"], self._voltages.u_min2, self._voltages.u_max2
-        limited = np.isin(columns["limited_by"], LIMITS) & (columns["traction_n"] < columns["wished_n"])
+        limited = np.isin(columns["limited_by"], LIMITS) & (columns["traction_n"] < columns["wished_n"]) & (volts != 0.0)
+        limited |= columns["limited_by"] == BY_STANDSTILL_CURRENT
         self._spells("low_voltage", columns, volts < low - TOLERANCE_V, low)
         self._spells("high_voltage", columns, volts > high + TOLERANCE_V, high)
         self._spells("current_limited", columns, limited, np.nan)
         self._regroup(columns)
+        self._lose(columns)
 
     def _spells(self, kind: str, columns: Columns, inside: NDArray[np.bool_], limit: float) -> None:
         """Note spells; one that is open at the end of the rows of a train goes on with its next ones."""
@@ -68,7 +77,9 @@ class TrainEvents:
             event = open_before.get(k) if first_of_train[first] else None
             if event is None:
                 event = self._note(kind, k, float(time_s[first]), float(columns["s_m"][first]), value, limit)
-                event["reason"] = LIMITED_BY[columns["limited_by"][first]]
+                event["reasons"] = []
+            found = [LIMITED_BY[code] for code in np.unique(columns["limited_by"][first:end])]
+            event["reasons"] += [reason for reason in found if reason not in event["reasons"]]
             event["value"], event["end_s"] = pick(event["value"], value), float(time_s[end - 1]) + self._step_s
             if last_of_train[end - 1]:
                 self._open[kind][k] = event
@@ -86,6 +97,21 @@ class TrainEvents:
             event["end_s"] = time_s
         ends = np.diff(train, append=-1) != 0
         self._grouping.update(zip(train[ends].tolist(), grouping[ends].tolist(), strict=True))
+
+    def _lose(self, columns: Columns) -> None:
+        """Note where trains lose their voltage and get it back; on a dead line it is 0 exactly."""
+        train, dead = columns["train"], columns["voltage_v"] == 0.0
+        starts = np.flatnonzero(np.diff(train, prepend=-1) != 0)
+        before = np.roll(dead, 1)
+        before[starts] = [k in self._lost_s for k in train[starts].tolist()]
+        for n in np.flatnonzero(dead != before).tolist():
+            k, time_s, at_m = int(train[n]), float(columns["time_s"][n]), float(columns["s_m"][n])
+            if dead[n]:
+                self._lost_s[k] = time_s
+                event = self._note("voltage_lost", k, time_s, at_m, np.nan, np.nan)
+            else:
+                event = self._note("voltage_back", k, time_s, at_m, time_s - self._lost_s.pop(k), np.nan)
+            event["end_s"] = time_s
 
     def note(self, kind: str, k: int, time_s: float, s_m: float, subject: str = "") -> None:
         """Note an event of train `k` at a time [s] and place [m]; `subject` is the station of a call."""

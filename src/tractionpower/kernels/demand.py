@@ -97,13 +97,16 @@ def fill_row(train, tally, row, spent, line, parts):
         recovered = min(max(auxiliary_w + traction_w - row.power_w, 0.0), train.brake_efficiency * row.brake_w)
         gained = max(gained, recovered)
     refused = gained - recovered if train.regenerates else 0.0
-    heated = min(gained - recovered, train.rheostat_w)
-    row.electric_brake_n = 0.0
+    off_w = row.electric_brake_n = 0.0
+    if tally.off_brake_j > 0.0:  # where nothing can be fed back
+        off_w = train.brake_efficiency * tally.off_brake_j / spent
+        row.electric_brake_n = tally.off_brake_ns / spent
+    heated = min(gained - recovered, max(train.rheostat_w - off_w, 0.0))
     if recovered + heated > 0.0:
         electric_w = (recovered + heated) / train.brake_efficiency
         slow = tally.electric_ns / tally.electric_j if tally.electric_j > 0.0 else tally.brake_ns / tally.brake_j
-        row.electric_brake_n = min(electric_w * slow, tally.brake_ns / spent)
-    row.braking_resistor_w = heated
+        row.electric_brake_n = min(row.electric_brake_n + electric_w * slow, tally.brake_ns / spent)
+    row.braking_resistor_w = heated + off_w
     row.auxiliary_w, row.starting_resistor_w = auxiliary_w, resistor_w
     row.refused_w, row.recovered_w = refused, recovered
     if train.drive == INVERTER:

@@ -6,8 +6,8 @@ import numpy as np
 
 from tractionpower.kernels.demand import demand_current
 from tractionpower.kernels.jit import inlined, njit
-from tractionpower.kernels.motion import TINY_S
 from tractionpower.kernels.ports import port_current
+from tractionpower.kernels.tally import TINY_S
 from tractionpower.kernels.train_port import write_constant_port, write_port
 from tractionpower.kernels.train_step import brakes_after_traction, expect_braking, settle, wish
 from tractionpower.kernels.train_tables import GONE
@@ -75,10 +75,11 @@ def ask_line(tables, state, t):
     segments = tables.network.segments
     for n in range(state.progress[0].active):
         k = state.active[n]
-        wish(tables.trains, state.trains, k, t, h)
         _place(tables, state, k)
         port = tables.network.ports[tables.fleet[k].port]
-        port.scale = 1.0 if port.start_v > 0.0 else 0.0  # without a source the line is dead
+        is_dead = not port.start_v > 0.0  # no source reaches the line
+        wish(tables.trains, state.trains, k, t, h, is_dead)
+        port.scale = 0.0 if is_dead else 1.0
         if fixed_v > 0.0:
             write_constant_port(tables.trains, state.trains, k, port, segments, fixed_v)
         else:

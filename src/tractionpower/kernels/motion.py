@@ -12,9 +12,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from tractionpower.kernels.ceiling import meet_ceiling, time_of
 from tractionpower.kernels.effort import greatest_effort
 from tractionpower.kernels.jit import inlined, njit
-from tractionpower.kernels.tally import add_brake, add_resistance, add_traction, clear, mark
+from tractionpower.kernels.tally import TINY_S, add_brake, add_resistance, add_traction, clear, mark
 from tractionpower.kernels.train_tables import (
     ACCELERATING,
     BRAKING,
@@ -29,19 +30,22 @@ from tractionpower.kernels.train_tables import (
     LEAVE,
     NO_DRIVE,
     OUTSIDE,
+    POWERED,
     RUNNING,
     STANDING,
     STAY,
     STAYING,
     UNPOWERED,
 )
-from tractionpower.kernels.wayside import additional_resistance, note_calls
-
-TINY_S = 1e-9
-"""Rest of a step that is not worth a phase [s]."""
-
-HERE_M = 1e-6
-"""A front this near to a place is there [m]."""
+from tractionpower.kernels.wayside import HERE_M, additional_resistance, note_calls, resistance_at
+from tractionpower.kernels.without_line import (
+    FORCED,
+    allowed_here,
+    brake_to_stand,
+    note_without_line,
+    so_far,
+    stand_without_line,
+)
 
 _ON_CEILING = 1e-10
 _MOST_IDLE = 1000
@@ -65,7 +69,22 @@ def run_step(tables, train, mover, tally, clock, cap_w, called):
     called : tuple
         Arrays of arrivals and departures by row of the stops [s], which are written.
     """
-    clear(tally)
+    if train.offs > 0 or mover.lost_s < np.inf:
+        _run_restricted(tables, train, mover, tally, clock, cap_w, called)
+    else:
+        _run_phases(tables, train, mover, tally, clock, cap_w, called, False)
+
+
+@njit
+def _run_restricted(tables, train, mover, tally, clock, cap_w, called):
+    """Do what `run_step` does on a route with stretches without power, or on a dead line."""
+    _run_phases(tables, train, mover, tally, clock, cap_w, called, True)
+
+
+@inlined
+def _run_phases(tables, train, mover, tally, clock, cap_w, called, is_restricted):
+    """Run the phases of a step; whether power may be off anywhere is known when this is compiled, twice."""
+    clear(tally, mover.v_mps)
     now, end = clock[0], clock[0] + clock[1]
     idle = 0
     while idle < _MOST_IDLE:  # arrivals and departures take no time; a phase does
@@ -82,9 +101,9 @@ def run_step(tables, train, mover, tally, clock, cap_w, called):
         if mover.status == RUNNING and _arrive(tables, train, mover, now, called):
             continue
         if mover.status == RUNNING:
-            spent = _run(tables, train, mover, tally, (now, left), cap_w, called)
+            spent = _run(tables, train, mover, tally, (now, left), cap_w, called, is_restricted)
         else:
-            spent = _stand(tables, train, mover, tally, (now, left), called)
+            spent = _stand(tables, train, mover, tally, (now, left), called, is_restricted)
         tally.on_line_s += spent
         now += spent
         if spent > TINY_S:
@@ -115,9 +134,11 @@ def _arrive(tables, train, mover, now, called):
 
 
 @inlined
-def _stand(tables, train, mover, tally, time, called):
+def _stand(tables, train, mover, tally, time, called, is_restricted):
     """Let a train stand until it may leave; return the time spent [s]."""
     now, left = time
+    if is_restricted and stand_without_line(tables, train, mover, tally, time):
+        return left
     if tally.phase < 0:
         tally.phase = DWELLING
     if mover.status == STAYING or mover.leave_s >= now + left:
@@ -139,7 +160,7 @@ def _finish(train, mover, now):
 
 
 @inlined
-def _run(tables, train, mover, tally, time, cap_w, called):
+def _run(tables, train, mover, tally, time, cap_w, called, is_restricted):
     """Run one phase; return the time spent [s]."""
     pieces, p = tables.pieces, train.first_piece + mover.piece
     last = train.first_piece + train.pieces - 1
@@ -149,17 +170,32 @@ def _run(tables, train, mover, tally, time, cap_w, called):
     piece = pieces[p]
     ceiling = piece.w + piece.dw * (mover.s_m - piece.from_m)
     w = mover.v_mps * mover.v_mps
-    if w < ceiling - _ON_CEILING * (1.0 + ceiling) or mover.v_mps == 0.0:
-        now, left = time
-        return _accelerate(tables, train, mover, tally, (now, left, mover.v_mps * left, True), cap_w, called)
-    return _follow(tables, train, mover, tally, time, cap_w, called)
+    is_below = w < ceiling - _ON_CEILING * (1.0 + ceiling) or mover.v_mps == 0.0
+    if is_restricted:
+        return _run_where_allowed(tables, train, mover, tally, time, cap_w, called, is_below)
+    now, left = time
+    if is_below:
+        return _accelerate(tables, train, mover, tally, (now, left, mover.v_mps * left, True, np.inf), cap_w, called)
+    return _follow(tables, train, mover, tally, (now, left, np.inf), cap_w, called)
 
 
-@inlined
-def _resistance(train, track, v):
-    """Return the resistance [N] and its derivative [N s/m] at the speed `v`, with the additional one of the place."""
-    drag = train.c_ns2_per_m2 + track[1]
-    return train.a_n + track[0] + (train.b_ns_per_m + drag * v) * v, train.b_ns_per_m + 2.0 * drag * v
+@njit
+def _run_where_allowed(tables, train, mover, tally, time, cap_w, called, is_below):
+    """Run one phase on a route with stretches without power, or on a dead line; return the time spent [s]."""
+    now = time[0]
+    allowed, room, left = allowed_here(tables, train, mover, time)
+    cap_w = cap_w if allowed == POWERED else 0.0
+    before = so_far(tally)
+    falls = tables.pieces[train.first_piece + mover.piece].dw < 0.0
+    if allowed == FORCED and (is_below or not falls):
+        spent = brake_to_stand(tables, train, mover, tally, (now, left), called)
+    elif is_below:
+        spent = _accelerate(tables, train, mover, tally, (now, left, mover.v_mps * left, True, room), cap_w, called)
+    else:
+        spent = _follow(tables, train, mover, tally, (now, left, room), cap_w, called)
+    if allowed != POWERED:
+        note_without_line(train, mover, tally, before, allowed, spent)
+    return spent
 
 
 @inlined
@@ -188,7 +224,7 @@ def _balance(tables, train, mover, track, tau, cap_w):
     effort, resistance, by = 0.0, 0.0, BY_DRIVE
     for _ in range(_NEWTON_STEPS):
         effort, slope, by = _effort(tables, train, mover, mean, cap_w)
-        resistance, rise = _resistance(train, track, mean)
+        resistance, rise = resistance_at(train, track, mean)
         gap = v + half * (effort - resistance) - mean
         if gap > 0.0:
             low = mean
@@ -206,9 +242,10 @@ def _balance(tables, train, mover, track, tau, cap_w):
 def _accelerate(tables, train, mover, tally, time, cap_w, called):
     """Run with the greatest effort until the time is up, the ceiling is met, the route ends or the train comes to a stand.
 
-    `time` holds now, the time left, about how far the train comes [m], and whether the ceiling can be met.
+    `time` holds now, the time left, about how far the train comes [m], whether the ceiling can be met, and the way to where
+    power goes off or on [m].
     """
-    now, tau, distance, free = time
+    now, tau, distance, free, room = time
     v, meant = mover.v_mps, tau
     effort = resistance = acceleration = spent = speed = 0.0
     by = BY_DRIVE
@@ -227,7 +264,10 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
             spent, speed = -v / acceleration, 0.0
         distance = 0.5 * (v + speed) * spent
         if free:
-            distance, spent, speed = _meet_ceiling(tables, train, mover, acceleration, (distance, spent, speed))
+            distance, spent, speed = meet_ceiling(tables, train, mover, acceleration, (distance, spent, speed))
+        if distance > room:
+            distance, speed = room, np.sqrt(max(v * v + 2.0 * acceleration * room, 0.0))
+            spent = time_of(distance, v, speed)
         if abs(spent - meant) <= TINY_S and abs(distance - thought) <= near * (0.1 + distance):
             break
         meant = max(spent, TINY_S)
@@ -240,56 +280,26 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
 
 
 @inlined
-def _meet_ceiling(tables, train, mover, acceleration, way):
-    """Shorten a way (distance, time, speed at its end) to where it meets the ceiling or the end of the route."""
-    distance, spent, speed = way
-    pieces, s, w = tables.pieces, mover.s_m, mover.v_mps * mover.v_mps
-    last = train.first_piece + train.pieces - 1
-    for q in range(train.first_piece + mover.piece, last):
-        piece = pieces[q]
-        until = min(pieces[q + 1].from_m, s + distance)
-        ceiling = piece.w + piece.dw * (until - piece.from_m)
-        if w + 2.0 * acceleration * (until - s) > ceiling:
-            closing = 2.0 * acceleration - piece.dw
-            met = until
-            if closing > 0.0:
-                met = (piece.w - piece.dw * piece.from_m - w + 2.0 * acceleration * s) / closing
-                met = min(max(met, piece.from_m, s), until)
-            top = np.sqrt(max(piece.w + piece.dw * (met - piece.from_m), 0.0))
-            return met - s, _time_of(met - s, mover.v_mps, top), top
-        if pieces[q + 1].from_m >= s + distance:
-            return distance, spent, speed
-    rest = train.route_m - s  # the front leaves the route within the step
-    top = np.sqrt(max(w + 2.0 * acceleration * rest, 0.0))
-    return rest, _time_of(rest, mover.v_mps, top), top
-
-
-@inlined
-def _time_of(distance, v, speed):
-    return 2.0 * distance / (v + speed) if v + speed > 0.0 else 0.0
-
-
-@inlined
 def _follow(tables, train, mover, tally, time, cap_w, called):
     """Follow the ceiling to the end of its piece or of the time; fall below it where the effort is too small."""
-    now, left = time
+    now, left, room = time
     p = train.first_piece + mover.piece
-    piece, end = tables.pieces[p], tables.pieces[p + 1].from_m
+    piece, end = tables.pieces[p], min(tables.pieces[p + 1].from_m, mover.s_m + room)
     v, slowing = mover.v_mps, -0.5 * piece.dw
     final = np.sqrt(max(piece.w + piece.dw * (end - piece.from_m), 0.0))
-    spent = _time_of(end - mover.s_m, v, final)
+    spent = time_of(end - mover.s_m, v, final)
     speed, distance = final, end - mover.s_m
     if spent > left:
         spent, speed = left, max(v - slowing * left, 0.0)
         distance = 0.5 * (v + speed) * spent
     mean = 0.5 * (v + speed)
     track = additional_resistance(tables, train, mover, mover.s_m + 0.5 * distance, distance)
-    resistance, _ = _resistance(train, track, mean)
+    resistance, _ = resistance_at(train, track, mean)
     needed = resistance - train.inertia_kg * slowing
     if needed > 0.0:
         effort, _, _ = _effort(tables, train, mover, mean, cap_w)
         if needed > effort:
-            return _accelerate(tables, train, mover, tally, (now, spent, distance, False), cap_w, called)
+            return _accelerate(tables, train, mover, tally, (now, spent, distance, False, room), cap_w, called)
         add_traction(tables, train, mover, tally, needed, (distance, spent))
     else:
         add_brake(train, tally, -needed, distance, spent)

@@ -21,12 +21,13 @@ from tractionpower.kernels.train_tables import (
     ACCELERATING,
     COASTING,
     NO_DRIVE,
+    POWERED,
     RUNNING,
     SERIES_MOTORS,
     STAYING,
     UNPOWERED,
 )
-from tractionpower.kernels.wayside import additional_resistance, line_current_limit, note_calls
+from tractionpower.kernels.wayside import additional_resistance, line_current_limit, note_calls, power_off_at
 
 SPEED_PER_TIME = 0.2
 """Speed step over time step of the clock [m/s2]."""
@@ -78,6 +79,8 @@ def _speed_step(tables, state, k, clock, u, row):
     now, dv = clock
     train, mover = tables.trains[k], state.movers[k]
     gap = _ceiling(tables, train, mover, mover.s_m) - mover.v_mps * mover.v_mps
+    if not u > 0.0 or (train.offs > 0 and power_off_at(tables, train, mover)[0] != POWERED):
+        return 0.0
     if train.drive == SERIES_MOTORS and (mover.relay_open or u < train.relay_off_v or mover.relay_since_s < np.inf):
         return 0.0
     if gap <= 1e-6 * (1.0 + mover.v_mps * mover.v_mps) or _is_at_call(tables, train, mover):
@@ -118,7 +121,7 @@ def _speed_step(tables, state, k, clock, u, row):
     note_calls(tables, train, mover, (state.arrived_s, state.left_s), (now, distance, share * change / time))
     mover.s_m += distance
     mover.v_mps = v + share * change
-    mover.voltage_v, mover.held_s, mover.slowing = u, 0.0, change < 0.0
+    mover.voltage_v, mover.held_s, mover.slowing, mover.lost_s = u, 0.0, change < 0.0, np.inf
     return time
 
 
@@ -147,9 +150,14 @@ def _ceiling(tables, train, mover, s):
 
 @njit
 def _is_above(tables, train, mover, distance, change):
-    """Tell whether a way passes the ceiling anywhere: a stop or a short limit may lie within it, the square of v straight."""
+    """Tell whether a way passes the ceiling anywhere: a stop or a short limit may lie within it, the square of v straight.
+
+    Where the power goes off it ends as well.
+    """
     if not distance > 0.0:
         return False
+    if train.offs > 0 and distance > power_off_at(tables, train, mover)[1]:
+        return True
     v, w, end = mover.v_mps + change, mover.v_mps * mover.v_mps, mover.s_m + distance
     slope = (v * v - w) / distance
     for p in range(train.first_piece + mover.piece, train.first_piece + train.pieces - 1):

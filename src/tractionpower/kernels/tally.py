@@ -6,15 +6,28 @@ from tractionpower.kernels.effort import adhesion_limit, efficiency_at, greatest
 from tractionpower.kernels.jit import inlined
 from tractionpower.kernels.train_tables import BY_NOTHING, INVERTER
 
+TINY_S = 1e-9
+"""Rest of a step that is not worth a phase [s]."""
+
 
 @inlined
-def clear(tally):
-    """Start a step."""
+def clear(tally, v):
+    """Start a step at the speed `v` [m/s]."""
+    tally.entry_mps = v
     tally.traction_ns = tally.traction_j = tally.line_j = 0.0
     tally.brake_ns = tally.brake_j = tally.electric_ns = tally.electric_j = 0.0
     tally.resistance_ns = tally.resistance_j = tally.wished_ns = 0.0
     tally.moved_m = tally.moving_s = tally.on_line_s = 0.0
+    tally.off_s = tally.off_m = tally.off_j = tally.dark_s = 0.0
+    tally.off_brake_ns = tally.off_brake_j = 0.0
     tally.phase, tally.limited_by = -1, BY_NOTHING
+
+
+@inlined
+def powered_time(tally):
+    """Return for how long a train moves and may take traction current [s]."""
+    powered = tally.moving_s - tally.off_s
+    return powered if powered > TINY_S else 0.0
 
 
 @inlined

@@ -12,12 +12,15 @@ from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.motion import run_step
 from tractionpower.kernels.pantograph import auxiliary_current, current_limit
 from tractionpower.kernels.series_motors import at_full, choose_notch, lowest_notch, notch_below
+from tractionpower.kernels.tally import TINY_S, powered_time
 from tractionpower.kernels.train_tables import (
+    BY_POWER_OFF,
+    BY_STANDSTILL_CURRENT,
     DWELLING,
     HOLDING,
     INVERTER,
+    NO_DRIVE,
     OUTSIDE,
-    RUNNING,
     SERIES_MOTORS,
     STANDING,
     WAITING,
@@ -32,13 +35,16 @@ _MOST_TRIES = 60
 
 
 @inlined
-def wish(tables, state, k, t, h):
+def wish(tables, state, k, t, h, is_dead=False):
     """Let train `k` try the step from `t` [s] of length `h` [s] as if the voltage did not limit it.
 
-    Writes the trial, its tally and its demand; series motors choose their notch, held while the network is solved.
+    Writes the trial, its tally and its demand; series motors choose their notch, held while the network is solved. On a
+    dead line a train knows that it has no voltage; one without a drive wants none.
     """
     train, mover, trial = tables.trains[k], state.movers[k], state.trials[k]
     called = (state.arrived_s, state.left_s)
+    if is_dead or mover.lost_s < np.inf:
+        mover.lost_s = min(mover.lost_s, t) if is_dead and train.drive != NO_DRIVE else np.inf
     state.trials[k] = mover
     if train.drive == SERIES_MOTORS:
         _switch_relay(train, trial, t, h)
@@ -86,11 +92,12 @@ def expect_braking(tables, state, k, clock, u):
 @inlined
 def _write_demand(tables, train, mover, tally, demand, h):
     """Note what the trial asks of the line; limits hold while the train moves, powers are means of the step."""
-    demand.moving, demand.on_line = tally.moving_s / h, tally.on_line_s / h
-    demand.need_w = tally.line_j / tally.moving_s if tally.moving_s > 0.0 else 0.0
+    powered_s, supplied_s = powered_time(tally), tally.on_line_s - tally.dark_s
+    demand.moving, demand.on_line = powered_s / h, supplied_s / h if supplied_s > TINY_S else 0.0
+    demand.need_w = tally.line_j / powered_s if powered_s > 0.0 else 0.0
     demand.line_a = line_current_limit(tables, train, mover, tally.moving_s > 0.0)
     demand.gained_w, demand.expected_w = train.brake_efficiency * tally.electric_j / h, demand.need_w
-    demand.speed_mps, demand.half_s_per_kg, demand.resistance_n, demand.mean_mps = midpoint_of(train, mover, tally)
+    demand.speed_mps, demand.half_s_per_kg, demand.resistance_n, demand.mean_mps = midpoint_of(train, tally)
 
 
 @inlined
@@ -98,10 +105,11 @@ def _hold_notch(tables, train, mover, trial, tally, t):
     """Hold the notch of the trial, or a lower one where the train wishes less than it gives."""
     best = trial.notch
     trial.below = -1
-    need_w = tally.line_j / tally.moving_s if tally.moving_s > 0.0 else 0.0
+    powered_s = powered_time(tally)
+    need_w = tally.line_j / powered_s if powered_s > 0.0 else 0.0
     is_full = tally.wished_ns >= train.start_n * tally.moving_s * (1.0 - _FULL)
     if need_w > 0.0 and not (is_full or trial.relay_open):
-        speeds = midpoint_of(train, mover, tally)
+        speeds = midpoint_of(train, tally)
         _, most, _ = at_full(tables, tables.notches[train.first_notch + best], mover.voltage_v, speeds)
         if need_w < most:
             trial.notch = lowest_notch(tables, train, mover, best, need_w, speeds)
@@ -111,16 +119,18 @@ def _hold_notch(tables, train, mover, trial, tally, t):
 
 
 @inlined
-def midpoint_of(train, mover, tally):
+def midpoint_of(train, tally):
     """Return speed at the start [m/s], half of time over inertia [s/kg], resistance [N], mean speed [m/s] of a step.
+
+    Of a step a part of which is without power they are those of the rest.
 
     The mean speed of another effort F follows from the first three, v + (F - W) t / 2 M. The resistance is that of the
     trial, whose effort differs from the one permitted by what the voltage takes away.
     """
-    if tally.moved_m <= 0.0:
-        return mover.v_mps, 0.0, 0.0, mover.v_mps
-    mean = tally.moved_m / tally.moving_s
-    return mover.v_mps, 0.5 * tally.moving_s / train.inertia_kg, tally.resistance_j / tally.moved_m, mean
+    v, way, time = tally.entry_mps, tally.moved_m - tally.off_m, powered_time(tally)
+    if way <= 0.0 or time == 0.0:
+        return v, 0.0, 0.0, v
+    return v, 0.5 * time / train.inertia_kg, (tally.resistance_j - tally.off_j) / way, way / time
 
 
 @inlined
@@ -161,16 +171,14 @@ def settle(tables, state, k, clock, line, row):
     t, h = clock
     u, current, served = line
     train, mover, trial, demand = tables.trains[k], state.movers[k], state.trials[k], state.demands[k]
-    wished, done = state.wishes[k], state.done[k]
+    wished = done = state.wishes[k]
     got_w, taken, resistor_w, by, _ = demanded_traction(tables, train, trial, demand, u)
     got_w *= served
     row.train, row.time_s, row.s_m, row.v_mps = k, t, mover.s_m, mover.v_mps
     limited_by = wished.limited_by
     if not got_w >= demand.need_w * (1.0 - _SAME):
         _retry(tables, state, k, clock, got_w * demand.moving)
-        limited_by = by
-    else:
-        state.done[k] = wished
+        done, limited_by = state.done[k], by if limited_by != BY_POWER_OFF else limited_by
     v = mover.v_mps
     state.movers[k] = trial
     mover.voltage_v, mover.slowing = u, mover.v_mps < v
@@ -180,7 +188,7 @@ def settle(tables, state, k, clock, line, row):
             row.grouping = tables.notches[train.first_notch + mover.notch].series
         else:  # motors that were off start in the first grouping
             mover.notch, mover.notch_since_s = 0, -np.inf
-    stuck = mover.status == RUNNING and mover.v_mps == 0.0 and done.phase >= HOLDING
+    stuck = mover.status <= STANDING and mover.v_mps == 0.0 and done.phase >= HOLDING
     mover.held_s = mover.held_s + h if stuck else 0.0
     part = demand.moving * served
     parts = (u * own_current(train, demand, u) * served, u * taken * part, resistor_w * part)
@@ -191,12 +199,23 @@ def settle(tables, state, k, clock, line, row):
     if row.phase < 0:
         row.phase = WAITING if mover.status == OUTSIDE else DWELLING
     row.limited_by = limited_by
+    if done.phase == DWELLING and _cuts_auxiliaries(train, done, demand, u):
+        row.limited_by = BY_STANDSTILL_CURRENT
+    state.done[k] = done  # last: a copy of what has just been written makes the processor wait
+
+
+@inlined
+def _cuts_auxiliaries(train, done, demand, u):
+    """Tell whether the line cuts the auxiliaries of a train that stands through the step."""
+    if done.moving_s > 0.0 or demand.on_line == 0.0 or not u > 0.0:
+        return False
+    return auxiliary_current(train, max(u, train.lowest_v)) > demand.line_a
 
 
 @njit
 def step_alone(tables, state, k, clock, u, row):
     """Run train `k` over the step (start, length) [s] on an infinite bus of the voltage `u` [V], and fill `row`."""
-    wish(tables, state, k, clock[0], clock[1])
+    wish(tables, state, k, clock[0], clock[1], not u > 0.0)
     current, _ = demand_current(tables, tables.trains[k], state.trials[k], state.demands[k], u)
     settle(tables, state, k, clock, (u, current, 1.0), row)
 

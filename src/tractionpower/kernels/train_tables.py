@@ -69,11 +69,16 @@ TRAIN = np.dtype(
         ("stops", "i8"),
         ("first_limit", "i8"),
         ("limits", "i8"),
+        ("first_off", "i8"),  # into `points`: what the front may take (`POWERED`, ...) from a place on, the first at 0
+        ("offs", "i8"),
+        ("service_mps2", "f8"),  # deceleration of the service brake on level straight track
+        ("coast_s", "f8"),  # for how long it coasts on a dead line before it brakes to a stand
         ("route_m", "f8"),
         ("start_s", "f8"),
         ("start_mps", "f8"),
         ("end", "i8"),
-    ]
+    ],
+    align=True,
 )
 """A train on its route; equal powered vehicles are one drive, efforts and currents added up."""
 
@@ -90,6 +95,9 @@ STOP = np.dtype([("at_m", "f8"), ("departure_s", "f8"), ("dwell_s", "f8"), ("sto
 
 LINE_LIMIT = np.dtype([("from_m", "f8"), ("max_a", "f8"), ("standstill_a", "f8")])
 """Largest train current from a place on; infinite where the line sets none."""
+
+POWERED, COASTS, DARK = 0, 1, 2
+"""What the front of a train may take at a place: all; only its auxiliaries; nothing."""
 
 POINT = np.dtype([("x", "f8"), ("y", "f8")])
 """A point of a curve."""
@@ -137,13 +145,15 @@ ACCELERATING, CRUISING, COASTING, BRAKING, DWELLING, WAITING, HOLDING, UNPOWERED
 PHASES = ("accelerating", "cruising", "coasting", "braking", "dwelling", "waiting", "holding", "unpowered")
 
 BY_NOTHING, BY_SPEED, BY_ADHESION, BY_DRIVE, BY_LINE_CURRENT, BY_TRAIN_CURRENT, BY_VOLTAGE = range(7)
-"""What limits the effort, as codes of `LIMITED_BY`."""
+BY_POWER_OFF, BY_STANDSTILL_CURRENT = 7, 8
+"""What limits the effort, at standstill the auxiliaries, as codes of `LIMITED_BY`."""
 
-LIMITED_BY = ("nothing", "speed", "adhesion", "drive", "line_current", "train_current", "voltage")
+LIMITED_BY = (
+    "nothing", "speed", "adhesion", "drive", "line_current", "train_current", "voltage", "power_off", "standstill_current",
+)  # fmt: skip
 
 MOVER = np.dtype(
     [
-        ("status", "i8"),
         ("s_m", "f8"),
         ("v_mps", "f8"),
         ("piece", "i8"),  # of the ceiling, where the front is; counted from the train's first
@@ -151,19 +161,22 @@ MOVER = np.dtype(
         ("tail", "i8"),  # knot before the tail
         ("stop", "i8"),  # next call
         ("leave_s", "f8"),  # when it may leave the stop it stands at
-        ("limit", "i8"),
-        ("notch", "i8"),
-        ("below", "i8"),  # notch that takes turns with it, -1: off
+        ("lost_s", "f8"),  # since when the line has been dead; infinite: it is not
         ("notch_since_s", "f8"),
-        ("slowing", "?"),  # whether it lost speed in the step before
-        ("relay_open", "?"),
         ("relay_since_s", "f8"),  # since when the voltage asks for the other position; infinite: it does not
         ("voltage_v", "f8"),  # of the step before
         ("held_s", "f8"),  # for how long it has stood on its way because effort or power lack
         ("finished_s", "f8"),  # when it left the line or came to stay; NaN: not yet
-    ]
+        ("status", "i4"),
+        ("limit", "i4"),
+        ("notch", "i4"),
+        ("below", "i4"),  # notch that takes turns with it, -1: off
+        ("slowing", "?"),  # whether it lost speed in the step before
+        ("relay_open", "?"),
+    ],
+    align=True,
 )
-"""What one step leaves of a train for the next."""
+"""What one step leaves of a train for the next; copied twice in a step, so it is small: 128 bytes."""
 
 TALLY = np.dtype(
     [
@@ -179,6 +192,13 @@ TALLY = np.dtype(
         ("wished_ns", "f8"),
         ("moved_m", "f8"),
         ("moving_s", "f8"),
+        ("entry_mps", "f8"),  # speed where it first may take traction current, at the latest at the end of the step
+        ("off_s", "f8"),  # of `moving_s`, `moved_m`, `resistance_j`: where it may not
+        ("off_m", "f8"),
+        ("off_j", "f8"),
+        ("dark_s", "f8"),  # of `on_line_s`: without any current
+        ("off_brake_ns", "f8"),  # what resistors take of the electric brake where nothing can be fed back
+        ("off_brake_j", "f8"),
         ("phase", "i8"),  # at the start of the step
         ("limited_by", "i8"),  # without regard to the voltage, where the train accelerates
         ("on_line_s", "f8"),  # time on the line within the step
@@ -188,14 +208,14 @@ TALLY = np.dtype(
 
 DEMAND = np.dtype(
     [
-        ("need_w", "f8"),  # wished power while it moves: of an inverter drive from the line, of others at the wheel
-        ("moving", "f8"),  # share of the step in which it moves, and in which it is on the line
+        ("need_w", "f8"),  # wished power while it may pull: of an inverter drive from the line, of others at the wheel
+        ("moving", "f8"),  # share of the step in which it moves and may pull, and in which it has its auxiliaries
         ("on_line", "f8"),
         ("line_a", "f8"),  # largest train current that the line allows
         ("gained_w", "f8"),  # mean power that the electric brake gives
         ("expected_w", "f8"),  # traction, of the kind of `need_w`, of which that braking is the consequence
-        ("speed_mps", "f8"),  # at the start of the step
-        ("half_s_per_kg", "f8"),  # half of the time that it moves over its inertia
+        ("speed_mps", "f8"),  # at the start of the step, or where it first may pull
+        ("half_s_per_kg", "f8"),  # half of the time that it moves and may pull, over its inertia
         ("resistance_n", "f8"),
         ("mean_mps", "f8"),  # mean speed of the trial
     ]
@@ -259,6 +279,7 @@ def new_train_state(tables: TrainTables) -> TrainState:
     movers["relay_since_s"] = np.inf
     movers["notch_since_s"] = -np.inf
     movers["finished_s"] = np.nan
+    movers["lost_s"] = np.inf
     movers["voltage_v"] = tables.trains["nominal_v"]
     return TrainState(
         movers=movers,

@@ -1,11 +1,16 @@
-"""What the track does to a train: additional resistance under its length, calls, train current limits of the line."""
+"""What the track does to a train: additional resistance, calls, stretches without power, train current limits."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from tractionpower.kernels.jit import inlined
 
 GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s2] (ISO 80000-3)."""
+
+HERE_M = 1e-6
+"""A front this near to a place is there [m]."""
 
 _POINT_M = 1e-3
 """Shortest way over which the resistance under the front is taken [m]."""
@@ -83,6 +88,27 @@ def additional_resistance(tables, train, mover, s, way):
     height, drag = _mean_profile(knots, last, i, start, way)
     tail_height, tail_drag = _mean_profile(knots, last, j, start - length, way)
     return train.mass_kg * GRAVITY * (height - tail_height) / length, (drag - tail_drag) / length
+
+
+@inlined
+def resistance_at(train, track, v):
+    """Return the resistance [N] and its derivative [N s/m] at the speed `v`, with the additional one of the place."""
+    drag = train.c_ns2_per_m2 + track[1]
+    return train.a_n + track[0] + (train.b_ns_per_m + drag * v) * v, train.b_ns_per_m + 2.0 * drag * v
+
+
+@inlined
+def power_off_at(tables, train, mover):
+    """Return what the front may take where it is, one of `POWERED`, `COASTS`, `DARK`, and how far that holds [m]."""
+    points, low, end = tables.points, train.first_off, train.first_off + train.offs
+    high = end
+    while high - low > 1:
+        middle = (low + high) // 2
+        if points[middle].x <= mover.s_m + HERE_M:
+            low = middle
+        else:
+            high = middle
+    return int(points[low].y), points[high].x - mover.s_m if high < end else np.inf
 
 
 @inlined

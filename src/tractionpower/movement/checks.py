@@ -20,10 +20,10 @@ from tractionpower.movement.drive_checks import check_knee
 from tractionpower.movement.formation import form
 from tractionpower.movement.run_checks import Site, check_run
 from tractionpower.movement.stock_checks import check_train, check_vehicle
-from tractionpower.movement.telling import doubt, item_paths, listed
+from tractionpower.movement.telling import item_paths, listed
 from tractionpower.movement.timetable_checks import check_clock
 
-SHARED = ("cannot_start", "no_contact_line", "no_drive", "no_traction", "turns_round", "weak_brake")
+SHARED = ("cannot_start", "no_contact_line", "no_drive", "no_traction", "stop_without_power", "turns_round", "weak_brake")
 """Problems that are told once for all runs of which they are true in the same words."""
 
 
@@ -64,7 +64,7 @@ def check_movement(scenario: Scenario) -> list[Problem]:
     paths = item_paths("timetable.trains", [run.id for run in runs])
     problems += _share((run.id, problem) for path, run in zip(paths, runs, strict=True) for problem in check_run(path, run, site))
     problems += check_clock(paths, runs, scenario.clock) + check_categories(scenario)
-    return problems + _check_default_knee(scenario, voltages) + _check_power_off(scenario)
+    return problems + _check_default_knee(scenario, voltages)
 
 
 def _check_ids(scenario: Scenario) -> list[Problem]:
@@ -122,11 +122,3 @@ def _check_default_knee(scenario: Scenario, voltages: SystemVoltages | None) -> 
         return []
     system = scenario.supply.system
     return check_knee(f"limits[{system} knee_factor]", knee_factor(scenario.limits, system), voltages)
-
-
-def _check_power_off(scenario: Scenario) -> list[Problem]:
-    count = len(scenario.line.power_off)
-    if not count or not scenario.timetable.trains:
-        return []
-    found = f"{count} stretch{'es' * (count > 1)} without traction current, which trains do not heed in this version"
-    return [doubt("power_off_unused", "line.power_off", found)]

@@ -17,6 +17,7 @@ from tractionpower.kernels.train_tables import (
     LEAVE,
     LINE_LIMIT,
     PIECE,
+    POWERED,
     STAY,
     STOP,
     STOP_THERE,
@@ -110,7 +111,7 @@ def compile_trains(scenario: Scenario, runs: Sequence[str] | None = None) -> Mov
     knee = knee_factor(scenario.limits, scenario.supply.system)
     pools, rows = _Pools(), []
     for item in planned:
-        rows.append(_train_row(item, voltages, knee, pools))
+        rows.append(_train_row(item, voltages, knee, scenario.coast_without_voltage_s, pools))
     return Movement(pools.tables(np.array(rows, TRAIN) if rows else np.zeros(0, TRAIN)), tuple(planned), voltages)
 
 
@@ -213,7 +214,7 @@ class _Pools(DrivePools):
         )
 
 
-def _train_row(item: PlannedRun, voltages: SystemVoltages, knee: float, pools: _Pools) -> tuple[Any, ...]:
+def _train_row(item: PlannedRun, voltages: SystemVoltages, knee: float, coast_s: float, pools: _Pools) -> tuple[Any, ...]:
     mass = item.formation
     columns: dict[str, Any] = {
         "mass_kg": mass.mass_kg,
@@ -226,6 +227,8 @@ def _train_row(item: PlannedRun, voltages: SystemVoltages, knee: float, pools: _
         "nominal_v": voltages.u_n,
         "auxiliary_w": mass.auxiliary_w,
         "heating_s": mass.heating_w / voltages.u_n**2,
+        "service_mps2": mass.service_rate_mps2,
+        "coast_s": coast_s,
         "route_m": item.route_m,
         "start_s": item.start_s,
         "start_mps": item.start_mps,
@@ -235,6 +238,7 @@ def _train_row(item: PlannedRun, voltages: SystemVoltages, knee: float, pools: _
     columns["first_knot"], columns["knots"] = pools.knots.add(_knots(item))
     columns["first_piece"], columns["pieces"] = pools.pieces.add(ceiling_of(item))
     columns["first_limit"], columns["limits"] = pools.limits.add(_line_limits(item.path))
+    columns["first_off"], columns["offs"] = pools.points.add(_power_off(item.path))
     columns["first_stop"], columns["stops"] = len(pools.stops), len(item.calls)  # calls are written to: never shared
     pools.stops += [_stop(planned) for planned in item.calls]
     return tuple(columns.get(name, 0) for name in TRAIN.names or ())
@@ -279,6 +283,12 @@ def _line_limits(path: RoutePath) -> Any:
     still = np.where(np.isfinite(path.standstill_current_a), path.standstill_current_a, path.max_current_a)
     rows["standstill_a"] = np.minimum(still, NO_LIMIT)
     return rows
+
+
+def _power_off(path: RoutePath) -> Any:
+    if (path.power_kind == POWERED).all():
+        return []
+    return list(zip(path.power_from_m.tolist(), path.power_kind.tolist(), strict=True))
 
 
 def _stop(planned: PlannedCall) -> tuple[float, float, float, bool]:

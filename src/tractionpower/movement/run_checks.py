@@ -13,6 +13,8 @@ from tractionpower.alignment.intervals import Coverage, Interval, name_km, subtr
 from tractionpower.alignment.path import RoutePath
 from tractionpower.alignment.routes import check_route, check_speed_limits, name_stretches, stop_distance
 from tractionpower.errors import Problem, Severity
+from tractionpower.kernels.train_tables import POWERED
+from tractionpower.kernels.wayside import HERE_M
 from tractionpower.model.limits import SystemVoltages
 from tractionpower.model.line import Line, Station
 from tractionpower.model.timetable import Call, Leg, TrainRun
@@ -160,6 +162,7 @@ def _check_planned(path: str, planned: PlannedRun, site: Site) -> list[Problem]:
     problems += _check_line_current(path, planned, site.voltages)
     if planned.formation.driver is None:
         return [*problems, _no_drive(path, planned, ceiling)]
+    problems += _check_power_off(path, planned)
     if site.voltages is None or not _is_sound(planned, site):
         return problems
     return problems + _check_climb(path, planned, ceiling, starting_effort_n(planned.formation, site.voltages))
@@ -222,6 +225,21 @@ def _check_line_current(path: str, planned: PlannedRun, voltages: SystemVoltages
         f" {track} from km {_km(km)} on: nothing is left for traction"
     )
     yield doubt("no_traction", path, found, remedy="correct line.train_current_limits, or the auxiliaries")
+
+
+def _check_power_off(path: str, planned: PlannedRun) -> Iterator[Problem]:
+    """Yield a warning where the train stands and is to start, but gets no traction."""
+    route = planned.path
+    stops = [(call.at_m, f"stops at {call.call.station}") for call in planned.calls if call.call.stops]
+    if planned.start_mps == 0.0 and not (stops and stops[0][0] <= HERE_M):
+        stops.insert(0, (0.0, "starts from rest"))
+    for at_m, what in stops:
+        held = int(route.power_kind[np.searchsorted(route.power_from_m, at_m + HERE_M, side="right") - 1])
+        if held == POWERED or at_m >= planned.route_m - HERE_M:
+            continue
+        track, km = route.place(at_m)
+        found = f"the train {what}, on track {track} at km {_km(km)}, where it gets no traction to start again"
+        yield doubt("stop_without_power", path, found, remedy="correct line.power_off, or the place where the train stops")
 
 
 def _no_drive(path: str, planned: PlannedRun, ceiling: NDArray[np.void]) -> Problem:
