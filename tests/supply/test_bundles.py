@@ -10,9 +10,13 @@ from tractionpower.model.supply import ContactLine, ReturnCircuit
 from tractionpower.supply.bundles import HIGH, LOW, find_bundles
 
 
+def bundles_of(declared, along):
+    return find_bundles(declared, along, compile_axes(along), ())
+
+
 def only(declared, along, kms=()):
     """Return the only bundle of a line, cut."""
-    (bundle,) = find_bundles(declared, along, compile_axes(along), ())
+    (bundle,) = bundles_of(declared, along)
     bundle.cut_at(kms)
     return bundle
 
@@ -22,15 +26,15 @@ def rail_row(*tracks, low=0.0, high=20.0, ohm=0.01, **more):
 
 
 def test_tracks_that_share_rails_are_one_bundle():
-    assert [bundle.tracks for bundle in find_bundles(supply(), line("21"), ())] == [("1", "2")]
-    assert [bundle.tracks for bundle in find_bundles(supply(return_circuit=rails_of_each()), line(), ())] == [("1",), ("2",)]
+    assert [bundle.tracks for bundle in bundles_of(supply(), line("21"))] == [("1", "2")]
+    assert [bundle.tracks for bundle in bundles_of(supply(return_circuit=rails_of_each()), line())] == [("1",), ("2",)]
     chain = (rail_row("3", "1"), rail_row("2"), rail_row("4", "3", low=8.0), rail_row("5", "6"))
-    tracks = [bundle.tracks for bundle in find_bundles(supply(return_circuit=chain), line("654321"), ())]
+    tracks = [bundle.tracks for bundle in bundles_of(supply(return_circuit=chain), line("654321"))]
     assert tracks == [("1", "3", "4"), ("2",), ("5", "6")]
 
 
 def test_a_track_without_rails_is_a_bundle_of_its_own():
-    assert [bundle.tracks for bundle in find_bundles(supply(return_circuit=(rail_row("2"),)), line(), ())] == [("1",), ("2",)]
+    assert [bundle.tracks for bundle in bundles_of(supply(return_circuit=(rail_row("2"),)), line())] == [("1",), ("2",)]
 
 
 def test_cuts_are_devices_and_ends_of_rows():

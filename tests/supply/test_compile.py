@@ -285,8 +285,8 @@ def test_both_kilometres_of_a_chainage_break_are_one_place(rows, points):
     )
     supply, _ = single_line([tap("T", 15.0, ampere=1000.0)])
     changes = {
-        "contact_lines": tuple(ContactLine(from_km=a, to_km=b, resistance_ohm_per_km=0.05) for a, b in rows),
-        "return_circuit": tuple(ReturnCircuit(from_km=a, to_km=b, resistance_ohm_per_km=0.01) for a, b in rows),
+        "contact_lines": tuple(ContactLine(from_km=float(a), to_km=float(b), resistance_ohm_per_km=0.05) for a, b in rows),
+        "return_circuit": tuple(ReturnCircuit(from_km=float(a), to_km=float(b), resistance_ohm_per_km=0.01) for a, b in rows),
         "section_points": tuple(SectionPoint(id=f"P{km}", track="1", km=km, state="closed") for km in points),
     }
     solved = Solved(supply.model_copy(update=changes), line)  # 18 km long, the train 13 km from A
