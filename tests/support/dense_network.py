@@ -95,13 +95,16 @@ class DenseNetwork:
             self.wires += [(first, EARTH, shunt), (second, EARTH, shunt)]
 
     def _find_separations(self):
-        places, self.separated = self.places, set()
+        places, self.separated, self.isolated = self.places, set(), set()
         for station in (*self.supply.substations, *self.supply.section_cabins):
             if station.state != "bypassed":
-                self.separated |= {(track, places.cut(track, km)) for track, km in places.fed(station)}
+                cuts = {(track, places.cut(track, km)) for track, km in places.fed(station)}
+                self.separated |= cuts
+                self.isolated |= cuts if station.state == "open" else set()
         for point in self.supply.section_points:
             if point.state == "open":
                 self.separated.add((point.track, places.cut(point.track, point.km)))
+                self.isolated.add((point.track, places.cut(point.track, point.km)))
 
     def _string(self, track, piece, constants, loads, names):
         """Lay one conductor between two cuts with its loads; return the node of each load."""
@@ -202,13 +205,18 @@ class DenseNetwork:
             if switch.state == "closed" and first is not None and second is not None:
                 self._link(switch.id, first, second, switch.resistance_ohm)
         for connection in self.line.connections:
-            for nodes in zip(*(self._joined(end) for end in (connection.from_, connection.to)), strict=True):
-                if None not in nodes:
-                    self._join(*nodes)
+            self._connect_tracks(connection.from_, connection.to)
 
-    def _joined(self, end):
-        sides = self.places.sides(end.track, end.km)
-        return (sides[0] if sides else None), self.rail(end.track, end.km)
+    def _connect_tracks(self, *ends):
+        """Join rails, and contact lines but where one is cut on its way, one ends at what is open, or both end at devices."""
+        rails = [self.rail(end.track, end.km) for end in ends]
+        if None not in rails:
+            self._join(*rails)
+        sides = [self.places.sides(end.track, end.km) for end in ends]
+        cuts = [(end.track, self.places.cut(end.track, end.km)) for end in ends]
+        on_the_way = any(len(found) == 2 and cut in self.separated for found, cut in zip(sides, cuts, strict=True))
+        if all(sides) and not on_the_way and not self.isolated & {*cuts} and not {*cuts} <= self.separated:
+            self._join(sides[0][0], sides[1][0])
 
     # -- rails and earth
 
