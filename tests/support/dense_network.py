@@ -244,7 +244,7 @@ class DenseNetwork:
 
     def _number(self):
         supply, find = self.supply, self.one.find
-        self.sources = sorted((s for s in supply.substations if s.feeds), key=lambda s: s.id)
+        self.sources = sorted((s for s in supply.substations if s.feeds and self._has_return(s)), key=lambda s: s.id)
         self.loads = sorted(supply.loads, key=lambda load: load.id)
         ports = [(("positive", s.id), ("negative", s.id)) for s in self.sources] + [self.load_node(load) for load in self.loads]
         names = {find(node) for wire in self.wires for node in wire[:2]} | {find(node) for port in ports for node in port}
@@ -272,6 +272,15 @@ class DenseNetwork:
             max([s.no_load_voltage_v * s.grid_voltage_pu for p, s in busbars if p == mine], default=0.0)
             for mine in self.wire_part
         ])  # fmt: skip
+
+    def _has_return(self, station):
+        """Tell whether wires join the negative busbar with rails."""
+        joined = Groups()
+        for first, second, _ in self.wires:
+            joined.join(self.one.find(first), self.one.find(second))
+        rails = {joined.find(self.one.find(name)) for name in self.one.label if name[0] == "rail"}
+        rails |= {joined.find(self.one.find(node)) for wire in self.wires for node in wire[:2] if node[0] == "rail"}
+        return joined.find(self.one.find(("negative", station.id))) in rails
 
     def node(self, name):
         """Return the number of a node by its name, -1 if no wire and no port touches it."""

@@ -45,6 +45,9 @@ def find_returning(topology: Topology) -> set[str]:
     wired = Merger(len(topology.nodes), [(topology.find(a), topology.find(b)) for a, b in wires])
     for a, b, _ in topology.edges():
         wired.join(topology.find(a), topology.find(b))
+    for span in topology.spans:
+        if topology.earth is not None and span.rail.siemens_per_m > 0.0:
+            wired.join(topology.find(span.rail.left), topology.earth)
     rails = {wired.find(topology.find(span.rail.left)) for span in topology.spans}
     return {name for name, busbar in topology.busbars.items() if wired.find(topology.find(busbar.negative)) in rails}
 
