@@ -31,7 +31,7 @@ SEEDS = range(200)
 def draw_switched(seed):
     """Return a random supply with feeders, switches and connections added, and its line."""
     draw, rng = Draw(seed, 77), np.random.default_rng([seed, 5])
-    supply = draw.supply()
+    supply, main = draw.supply(), draw.parts[0]
     stations = [*supply.substations, *supply.section_cabins]
     some = lambda items: items[rng.integers(len(items))]  # noqa: E731
 
@@ -39,25 +39,25 @@ def draw_switched(seed):
         if rng.random() < 0.2:
             return {"busbar": some(stations).id}
         side = some([None, "low_km", "high_km"])
-        km = some(stations).km if rng.random() < 0.6 else some(draw.grid)  # near busbars, so that loops come about
-        return {"track": some(draw.tracks), "km": km} | ({"side": side} if side else {})
+        km = some(stations).km if rng.random() < 0.6 else some(main.grid)  # near busbars, so that loops come about
+        return {"track": some(main.tracks), "km": km} | ({"side": side} if side else {})
 
     rows = {}
     for _ in range(rng.integers(0, 6)):
-        row = {"at": some(stations).id, "track": some(draw.tracks), "side": some(["low_km", "high_km"])}
+        row = {"at": some(stations).id, "track": some(main.tracks), "side": some(["low_km", "high_km"])}
         row |= {"state": some(["open", "closed"]), "resistance_ohm": some([0.0, 0.01])}
         rows[row["at"], row["track"], row["side"]] = row
     if rng.random() < 0.3:  # a station that meets a track elsewhere
-        row = {"at": some(stations).id, "track": some(draw.tracks), "side": "high_km", "km": some(draw.grid[1:-1])}
+        row = {"at": some(stations).id, "track": some(main.tracks), "side": "high_km", "km": some(main.grid[1:-1])}
         rows = {key: item for key, item in rows.items() if key[:2] != (row["at"], row["track"])} | {0: row}
     switches = []
     for k in range(rng.integers(0, 6)):
         state, ohm = some(["open", "closed", "closed"]), some([0.0, 0.0, 0.0, 0.01])
         switches.append({"id": f"Q{k}", "from": end(), "to": end(), "resistance_ohm": ohm, "state": state})
     for k in range(rng.integers(0, 3)):  # by-passes
-        across = {"track": some(draw.tracks), "km": some(stations).km}
+        across = {"track": some(main.tracks), "km": some(stations).km}
         switches.append({"id": f"B{k}", "from": across | {"side": "low_km"}, "to": across | {"side": "high_km"}})
-    place = lambda: {"track": some(draw.tracks), "km": some(draw.grid)}  # noqa: E731
+    place = lambda: {"track": some(main.tracks), "km": some(main.grid)}  # noqa: E731
     connections = [{"from": place(), "to": place()} for _ in range(rng.integers(0, 3))]
     plain = supply.model_dump() | {"feeders": [*rows.values()], "switches": switches}
     line = Line.model_validate(draw.line.model_dump() | {"connections": connections})
