@@ -54,7 +54,7 @@ def test_a_shipped_line_in_an_empty_folder(tmp_path, capsys):
     told = capsys.readouterr()
     folder = tmp_path / "reports" / "two-substations"
     assert [path.name for path in tmp_path.iterdir()] == ["reports"]
-    written = WRITTEN - {"loads.parquet"} | {"trains.parquet", "figures", "report.xlsx"}
+    written = WRITTEN - {"loads.parquet"} | {"trains.parquet", "cabins.parquet", "figures", "report.xlsx"}
     assert {path.name for path in folder.iterdir()} == written
     assert Results.open(folder).run["status"] == "complete"
     assert all(path.stat().st_size > 1000 for path in (folder / "figures").iterdir())

@@ -168,7 +168,7 @@ _TOLD: dict[str, Callable[[dict[str, Any]], str]] = {
     "low_voltage": lambda row: f"{_spell(row)}: down to {row['value']:.1f} V, below {row['limit']:g} V",
     "high_voltage": lambda row: f"{_spell(row)}: up to {row['value']:.1f} V, above {row['limit']:g} V",
     "current_limited": lambda row: (
-        f"{_spell(row)}: {_what_is_cut(row['reasons'])} limited by {' and '.join(row['reasons']).replace('_', ' ')},"
+        f"{_spell(row)}: {_what_is_cut(row['reasons'])} limited by {' and '.join(sorted(row['reasons'])).replace('_', ' ')},"
         f" down to {row['value']:.1f} V"
     ),
     "voltage_lost": lambda row: "the contact line is dead: neither traction nor auxiliaries",
