@@ -5,11 +5,13 @@ import re
 from pathlib import Path
 
 import pytest
+from small_studies import run_in_memory
 
+import tractionpower
 from tractionpower.io.conductor_files import CONDUCTORS
 from tractionpower.io.documents import read_document
 from tractionpower.io.text_files import Source
-from tractionpower.model.supply import Supply
+from tractionpower.model.supply import Load, Supply
 from tractionpower.supply.conductor_checks import check_conductors
 
 ROOT = Path(__file__).parents[1]
@@ -51,3 +53,46 @@ def test_the_examples_of_the_page_of_conductors_are_sound(tmp_path):
     supply = read_document(tmp_path / "supply.yaml", Supply)
     assert len(supply.contact_lines) == 4
     assert check_conductors(supply, CONDUCTORS.over_shipped(rows)) == []
+
+
+def keys_of(text):
+    """Return the text of each key of a YAML document."""
+    return {key: text for text, key in re.findall(r"^((\w+):.*\n(?:[ #].*\n)*)", text, re.MULTILINE)}
+
+
+@pytest.fixture(scope="module")
+def network_examples(tmp_path_factory):
+    """Return the studies of the page of the network: each block of a supply over the first, with the line before it."""
+    page = (ROOT / "docs" / "network.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```yaml\n# (line|supply)\.yaml\n(.*?)```", page, re.DOTALL)
+    assert len(blocks) == page.count("```yaml")
+    parts, first, studies = {}, {}, []
+    for kind, text in blocks:
+        parts[kind] = keys_of(text)
+        assert "".join(parts[kind].values()) == text
+        if kind == "supply":
+            first = first or parts[kind]
+            folder = tmp_path_factory.mktemp("example")
+            (folder / "study.yaml").write_text('clock: {start: "06:00:00", end: "06:45:00"}\n', encoding="utf-8")
+            (folder / "line.yaml").write_text("".join(parts["line"].values()), encoding="utf-8")
+            (folder / "supply.yaml").write_text("".join((first | parts[kind]).values()), encoding="utf-8")
+            studies.append(tractionpower.load(folder))
+    return studies
+
+
+def test_the_examples_of_the_page_of_the_network_are_sound(network_examples):
+    assert len(network_examples) == 8
+    shown = {key for study in network_examples for part in (study.line, study.supply) for key, rows in part if rows}
+    assert {"feeders", "switches", "switch_events", "bonds", "earthing", "voltage_limiting_devices", "connections"} <= shown
+    for study in network_examples:
+        assert tractionpower.check(study) == []
+
+
+def test_the_examples_of_the_page_of_the_network_run(network_examples):
+    train = Load.model_validate({"id": "train", "track": "2", "km": 12.4, "current_a": 1000.0})
+    for study in network_examples:
+        supply = study.supply.model_copy(update={"loads": (*study.supply.loads, train)})
+        results, outcome, _ = run_in_memory(study.model_copy(update={"supply": supply}))
+        assert outcome.run["status"] == "complete"
+        assert outcome.run["ledgers"]["electric"]["closes"]
+        assert results.table("substations")["current_a"].max() > 400.0

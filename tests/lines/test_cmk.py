@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_studies import run_in_memory
 
 import tractionpower
 
@@ -47,6 +48,11 @@ def cmk():
 
 
 @pytest.fixture(scope="module")
+def common_return():
+    return tractionpower.load(FOLDER / "study-common-return.yaml")
+
+
+@pytest.fixture(scope="module")
 def journeys(cmk):
     return tractionpower.journeys(cmk)
 
@@ -56,8 +62,9 @@ def track_of(run):
     return leg.track
 
 
-def test_nothing_is_wrong_or_doubtful(cmk):
+def test_nothing_is_wrong_or_doubtful(cmk, common_return):
     assert tractionpower.check(cmk) == []
+    assert tractionpower.check(common_return) == []
 
 
 def test_stations_stand_where_the_source_has_them(cmk):
@@ -90,19 +97,39 @@ def test_the_formula_gives_the_published_substation():
 
 
 def test_substations_have_the_characteristic_of_their_units(cmk):
-    text = (FOLDER / "supply.yaml").read_text(encoding="utf-8")
-    named = re.findall(r"\{id: ([\w ]+), km:[^#]*# (\d) x (PD-[\d.]+), (\d+) MVA", text)
+    text = (FOLDER / "README.md").read_text(encoding="utf-8")
+    named = re.findall(r"^\| ([\w ]+) \| ([\d.]+) \| (\d) × (PD-[\d.]+) \| (\d+) \|$", text, re.MULTILINE)
     stations = {station.id: station for station in cmk.supply.substations}
     assert [name for name, *_ in named] == list(stations)
-    for name, units, unit, fault_mva in named:
-        data, station = UNITS[unit], stations[name]
-        no_load_v, ohm = source_of(*data, int(units), float(fault_mva) * 1e6)
+    for name, km, units, unit, fault_mva in named:
+        data, station, fault_va = UNITS[unit], stations[name], float(fault_mva) * 1e6
+        no_load_v, ohm = source_of(*data, int(units), fault_va)
+        assert (station.km, station.units) == (float(km), int(units))
         assert station.no_load_voltage_v == pytest.approx(no_load_v, abs=0.051), name
         assert station.internal_resistance_ohm == pytest.approx(ohm, abs=5.1e-5), name
         heat_w = int(units) * (data[2] + 3 * 2.0 * data[3])  # at rated load
         assert station.dissipative_resistance_ohm * (int(units) * data[3]) ** 2 == pytest.approx(heat_w, rel=1e-3), name
-        assert station.feeder_resistance_ohm == pytest.approx(0.060 * 0.35 / 2, abs=5e-5)
-        assert station.return_resistance_ohm == pytest.approx(0.125 * 0.35 / 6, abs=5e-5)
+        grid_v = no_load_v * 0.26 * int(units) * data[0] / fault_va  # the grid's part of the drop at rated load
+        assert station.grid_resistance_ohm * int(units) * data[3] == pytest.approx(grid_v, abs=0.05), name
+
+
+def test_feeders_have_the_resistance_of_their_cables(cmk, common_return):
+    rows = cmk.supply.feeders
+    substations = {station.id for station in cmk.supply.substations}
+    assert len(rows) == 13 * 6 + 12 * 4
+    for row in rows:
+        per_km = {"YAKY-500": 0.060, "YAKY-240": 0.125}[row.cable]
+        ohm = per_km * row.length_m / 1000.0 / row.cables
+        expected = 0.0146 if row.side == "return" else 0.0105 if row.at in substations else 0.0015
+        assert ohm == pytest.approx(expected, abs=5e-5), row.id
+    for station in common_return.supply.substations:
+        assert station.feeder_resistance_ohm == pytest.approx(0.0105)
+        assert station.return_resistance_ohm == pytest.approx(0.0146 / 2)
+
+
+def test_every_feeder_to_a_contact_line_has_a_breaker(cmk):
+    settings = {(row.side == "return", row.trip_current_a, row.reclose_after_s) for row in cmk.supply.feeders}
+    assert settings == {(False, 3000.0, 10.0), (False, 2500.0, 10.0), (True, None, None)}
 
 
 def test_one_cabin_stands_between_two_substations(cmk):
@@ -183,6 +210,38 @@ def test_trains_have_five_to_eight_percent_in_hand(cmk, journeys):
         assert 1.05 <= moving / figures[f"train {run.id}", "running_time_s"] <= 1.08, run.id
 
 
+def in_the_peak(scenario):
+    """Return the results of ten minutes of the morning peak, in which EIP 1408 gains speed at Idzikowice."""
+    clock = scenario.clock.model_copy(update={"start": 28_500.0, "end": 29_100.0})
+    results, outcome, _ = run_in_memory(scenario.model_copy(update={"clock": clock}))
+    assert outcome.run["status"] == "complete"
+    return results
+
+
+def test_bonded_rails_are_nearly_one_conductor(cmk, common_return):
+    bonded, common = (in_the_peak(scenario) for scenario in (cmk, common_return))
+    trains = [results.table("trains").set_index(["time_s", "train"])["voltage_v"] for results in (bonded, common)]
+    assert len(trains[0]) > 5000
+    apart = (trains[0] - trains[1]).abs()
+    assert 0.1 < apart.mean() < 3.0
+    assert trains[0].min() < 2950.0
+    rails = bonded.table("rail_profile")
+    assert set(rails["track"]) == {"1", "2"}
+    assert 20.0 < rails["highest_potential_v"].max() < 120.0
+    assert "rail_profile" not in common.tables or common.table("rail_profile").empty
+
+
+def test_feeders_carry_what_their_substation_feeds(cmk):
+    results = in_the_peak(cmk)
+    feeders, stations = results.table("feeders"), results.table("substations")
+    to_line = feeders[feeders["side"] != "return"].groupby(["time_s", "substation"], observed=True)["current_a"].sum()
+    back = feeders[feeders["side"] == "return"].groupby(["time_s", "substation"], observed=True)["current_a"].sum()
+    fed = stations.set_index(["time_s", "substation"])["current_a"]
+    assert (to_line - fed).abs().max() < 0.01
+    assert (back - fed).abs().max() < 0.01
+    assert feeders.loc[feeders["side"] == "return", "track"].nunique() == 2
+
+
 @pytest.mark.slow
 def test_the_supply_carries_the_day(cmk):
     results = tractionpower.simulate(cmk)
@@ -192,3 +251,5 @@ def test_the_supply_carries_the_day(cmk):
     assert {note["status"] for note in results.run["trains"]} == {"left", "on_line"}  # some are on their way at midnight
     assert results.table("calls")["late_s"].max() < 60.0
     assert 2600.0 < results.table("trains")["voltage_v"].min() < 2950.0  # a load worth designing for, above U_min2 with ease
+    assert "tripped" not in set(results.table("events")["kind"])
+    assert 2000.0 < results.table("feeders")["current_a"].max() < 2500.0  # an older setting would trip, those assumed do not

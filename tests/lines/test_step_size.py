@@ -9,7 +9,11 @@ import tractionpower
 
 LINES = Path(__file__).parents[2] / "lines"
 FINE_S = 0.05
-SPANS = {"two-substations": ("00:00:00", "00:10:00"), "cmk": ("07:00:00", "08:00:00")}  # cmk: an hour of the morning peak
+SPANS = {
+    "two-substations": ("00:00:00", "00:10:00"),
+    "cmk": ("07:00:00", "08:00:00"),  # an hour of the morning peak
+    "y-junction": ("06:00:00", "07:10:00"),
+}
 HIGHEST = {"running_time_s": 1e-3, "journey_time_s": 1e-3, "energy_taken_kwh": 2e-3}
 """Greatest difference as a share of the value."""
 VOLTS = {"lowest_10_s_mean_voltage_v": 5.0, "lowest_pantograph_voltage_v": 25.0}

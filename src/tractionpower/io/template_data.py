@@ -183,7 +183,7 @@ All values are assumed: put yours in their place.
 |---|---|
 | `study.yaml` | names the other files, sets the simulated time |
 | `line.yaml` | tracks, stations, profile, speed limits |
-| `supply.yaml` | substations, section cabins, contact lines, return circuit, loads |
+| `supply.yaml` | substations, section cabins, contact lines, return circuit, loads; as comments feeders, switches, bonds, earth |
 | `timetable.yaml` | which train runs when and where, and where it stops |
 | `rollingstock/trains/*.yaml` | trains: which vehicles they are made of |
 | `rollingstock/vehicles/*.yaml` | vehicles: mass, running resistance, drive, brakes, auxiliaries |
