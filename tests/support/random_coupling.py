@@ -102,6 +102,9 @@ class RandomCoupling:
             "return_circuit": returns,
             "loads": [self._load(k) for k in range(rng.integers(0, 4))] if self.chance(0.4) else [],
         }
+        for k, station in enumerate(supply["substations"]):  # two at one place would be a loop without resistance
+            if any(abs(station["km"] - other["km"]) < 0.002 for other in supply["substations"][:k]):
+                station["feeder_resistance_ohm"] = 0.002
         if self.more.random() < 0.25:  # a stretch of one track that nothing feeds, unless a substation or cabin stands there
             low = round(float(self.more.uniform(0.5, length - 1.0)), 3)
             places = (low, round(low + float(self.more.uniform(0.05, 3.0)), 3))
