@@ -44,9 +44,10 @@ def test_trains_on_a_network_without_a_source_stand_still(kind):
     assert results.run["status"] == "complete"
     assert [each["status"] for each in results.run["trains"]] == ["stuck", "stuck"]
     np.testing.assert_array_equal(rows[["voltage_v", "current_a", "speed_kmh", "tractive_force_kn"]], 0.0)
-    low = results.table("events").query("kind == 'low_voltage'")
-    assert list(low["subject"]) == ["E", "F"]
-    assert not next(verdict for verdict in results.run["verdicts"] if verdict["name"] == "lowest voltage")["met"]
+    lost = results.table("events").query("kind == 'voltage_lost'")
+    assert list(lost["subject"]) == ["E", "F"]
+    assert results.run["verdicts"] == []  # nowhere is there a voltage to judge
+    assert any("without voltage for up to 200 s: trains E, F" in note for note in results.run["notes"])
     assert close(results)
 
 
@@ -78,7 +79,7 @@ def test_a_train_coasts_through_a_dead_stretch():
     assert (np.diff(inside["speed_kmh"]) < 0.0).all()
     assert (inside["tractive_force_kn"] == 0.0).all()
     assert outside["voltage_v"].min() > 2500.0
-    (low,) = results.table("events").query("kind == 'low_voltage'").to_dict("records")
+    (low,) = results.table("events").query("kind == 'voltage_lost'").to_dict("records")
     assert low["position_km"] == pytest.approx(14.0, abs=0.05)
     assert results.run["trains"][0]["status"] == "left"
     assert close(results)

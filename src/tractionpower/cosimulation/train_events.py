@@ -56,7 +56,7 @@ class TrainEvents:
         volts, low, high = columns["voltage_v"], self._voltages.u_min2, self._voltages.u_max2
         limited = np.isin(columns["limited_by"], LIMITS) & (columns["traction_n"] < columns["wished_n"]) & (volts != 0.0)
         limited |= columns["limited_by"] == BY_STANDSTILL_CURRENT
-        self._spells("low_voltage", columns, volts < low - TOLERANCE_V, low)
+        self._spells("low_voltage", columns, (volts < low - TOLERANCE_V) & (volts != 0.0), low)
         self._spells("high_voltage", columns, volts > high + TOLERANCE_V, high)
         self._spells("current_limited", columns, limited, np.nan)
         self._regroup(columns)

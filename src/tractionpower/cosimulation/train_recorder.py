@@ -35,6 +35,9 @@ from tractionpower.results.windows import TrainWindows
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
+NO_VOLTAGE_V = 1e-9
+"""Below it a train is on a dead contact line, where its voltage is 0 exactly [V]."""
+
 Rows = NDArray[np.void]
 
 MECHANICAL = ("wheel", "kinetic", "potential", "resistance", "brakes")
@@ -110,6 +113,7 @@ class TrainRecorder:
             "u_max2": TrainSpells(trains, voltages.u_max2),
             "u_min2": TrainSpells(trains, voltages.u_min2, above=False),
         }
+        self.without_voltage = TrainSpells(trains, NO_VOLTAGE_V, above=False, tolerance=0.0)
         self._bin_v = np.zeros((self.places.bins, 2))  # sum and count
         self._bin_lowest, self._bin_highest = np.full(self.places.bins, np.inf), np.full(self.places.bins, -np.inf)
         self._groups = _groups_of(self.movement)
@@ -147,12 +151,22 @@ class TrainRecorder:
         taken = rows["power_w"] + rows["returned_w"]
         powers = (taken, *(rows[f"{name}_w"] for name in ("returned", "refused", "auxiliary", "drive_loss", "starting_resistor")))
         add_by_group(self._figures, train, np.stack([*(power * self.step_s for power in powers), rows["moved_m"]], axis=1))
-        order = np.argsort(train, kind="stable")
-        groups = [mine for mine in np.split(order, np.flatnonzero(np.diff(train[order])) + 1) if len(mine)]
-        self.lowest_v.add(rows, groups, "voltage_v", lowest=True)
-        self.highest_v.add(rows, groups, "voltage_v", lowest=False)
+        groups = _by_train(train)
         self._current_a.add(rows, groups, "current_a", lowest=False)
         self._speed_mps.add(rows, groups, "v_mps", lowest=False)
+        self.without_voltage.add(time_s, train, volts, self.step_s)
+        fed = volts != 0.0  # a dead contact line has no voltage that could be low
+        if fed.all():
+            self._count_voltages(rows, placed)
+        elif fed.any():
+            self._count_voltages(rows[fed], Placed(placed.track[fed], placed.km[fed], placed.sign[fed]))
+
+    def _count_voltages(self, rows: Rows, placed: Placed) -> None:
+        """Count voltages at the pantographs of trains that have one."""
+        volts, time_s, train = (np.ascontiguousarray(rows[name]) for name in ("voltage_v", "time_s", "train"))
+        groups = _by_train(train)
+        self.lowest_v.add(rows, groups, "voltage_v", lowest=True)
+        self.highest_v.add(rows, groups, "voltage_v", lowest=False)
         self.ten_seconds.add(time_s, train, volts, rows["s_m"])
         for spells in self.spells.values():
             spells.add(time_s, train, volts, self.step_s)
@@ -301,3 +315,9 @@ def _status(mover: np.void, clock_s: float) -> str:
     if mover["status"] == STAYING:
         return "stays"
     return "stuck" if mover["held_s"] >= STUCK_S else "on_line"
+
+
+def _by_train(train: Numbers) -> list[Numbers]:
+    """Return the rows of each train."""
+    order = np.argsort(train, kind="stable")
+    return [mine for mine in np.split(order, np.flatnonzero(np.diff(train[order])) + 1) if len(mine)]
