@@ -161,14 +161,14 @@ def leaky(loads=(), leakage=0.1, **more):
 def test_earth_is_ground_where_rails_leak():
     tables = compile_network(*leaky(), LIMITS)
     assert tables.busbar[0, 1] < tables.network.nodes
-    assert (tables.rail_nodes >= 0).all()
+    assert (np.maximum(tables.rail_table["node"], tables.rail_table["span"]) >= 0).all()
     assert len(tables.rail_places) == len(tables.rail_nodes) == 6  # two tracks, three cuts
     assert all(stretch.earthed for stretch in tables.stretches)
 
 
 def test_rails_that_nothing_joins_with_earth_have_no_potential():
     tables = compile_network(*seed_network(), LIMITS)
-    assert len(tables.rail_places) == len(tables.rail_nodes) == 0
+    assert len(tables.rail_places) == len(tables.rail_table) == 0
     assert not any(stretch.earthed for stretch in tables.stretches)
     supply, line = seed_network()
     device = VoltageLimitingDevice(id="V", track="1", km=10.0, closes=(VoltageTime(above_v=60.0),))
@@ -179,7 +179,7 @@ def test_rails_that_nothing_joins_with_earth_have_no_potential():
     assert tables.earth_edge.tolist() == [-1]
     latched = supply.model_copy(update={"voltage_limiting_devices": (device.model_copy(update={"state": "closed"}),)})
     tables = compile_network(latched, line, LIMITS)
-    assert (tables.rail_nodes >= 0).all()
+    assert (np.maximum(tables.rail_table["node"], tables.rail_table["span"]) >= 0).all()
     assert tables.earth_edge.tolist() == [0]
 
 

@@ -256,30 +256,6 @@ def test_sections_are_the_same_in_every_state():
     assert names[1:] == [names[0]] * 3
 
 
-def test_rail_places_share_the_length_of_the_rails():
-    broken = line(chainage_breaks=(ChainageBreak(at_km=7.0, continues_as_km=9.0),))
-    rails = rails_of_each(leakage=0.1)
-    declared = supply(return_circuit=rails, substations=(station(km=12.0),), bonds=(bond_beside(),))
-    places = build_topology(declared, broken).rail_places
-    assert [(place.tracks, place.km) for place in places] == [(track, km) for track in "12" for km in (0.0, 5.0, 12.0, 20.0)]
-    assert [place.length_m for place in places if place.tracks == "1"] == pytest.approx([2500.0, 5000.0, 6500.0, 4000.0])
-    assert [place.leakage_s_per_m for place in places] == [pytest.approx(1e-4)] * 8
-
-
-def test_rail_places_where_rows_of_rails_meet():
-    rails = (
-        ReturnCircuit(from_km=0.0, to_km=8.0, resistance_ohm_per_km=0.01, leakage_s_per_km=0.2),
-        ReturnCircuit(from_km=8.0, to_km=20.0, resistance_ohm_per_km=0.02),
-    )
-    found = graph(supply(return_circuit=rails))
-    places = [(place.km, place.length_m, place.leakage_s_per_m) for place in found.topology.rail_places]
-    assert places == [
-        (0.0, pytest.approx(4000.0), pytest.approx(2e-4)), (8.0, pytest.approx(4000.0), pytest.approx(2e-4)),
-        (8.0, pytest.approx(6000.0), 0.0), (20.0, pytest.approx(6000.0), 0.0),
-    ]  # fmt: skip
-    assert found.one(found.rail("1", 8.0, 0), found.rail("1", 8.0, 1))
-
-
 def test_lengths_are_the_same_at_once_and_one_by_one():
     broken = line(chainage_breaks=(ChainageBreak(at_km=7.0, continues_as_km=9.0),))
     topology = build_topology(

@@ -14,7 +14,7 @@ from tractionpower.kernels.block_tables import STEP_RESULT
 from tractionpower.kernels.train_tables import TRAIN_ROW
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.results import Results
-from tractionpower.supply.topology import RailPlace
+from tractionpower.supply.rail_places import RailPlace
 
 RAIL_OHM_PER_KM = 0.0055
 

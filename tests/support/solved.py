@@ -6,6 +6,7 @@ from tractionpower.io.limits_files import shipped_limits
 from tractionpower.kernels.flows import conductor_flows, link_current, skeleton_balance
 from tractionpower.kernels.network import CONVERGED, solve
 from tractionpower.kernels.ports import port_current
+from tractionpower.kernels.rail_potential import rail_potential
 from tractionpower.kernels.spans import place_ports
 from tractionpower.kernels.tables import new_work
 from tractionpower.model.line import Line, Track
@@ -67,9 +68,9 @@ class Solved:
         """Rail potentials by tracks and kilometre [V]."""
         tables = self.tables
         return {
-            (place.tracks, place.km): float(self.work.node_v[node])
-            for place, node in zip(tables.rail_places, tables.rail_nodes.tolist(), strict=True)
-            if node >= 0
+            (place.tracks, place.km): float(potential)
+            for place, row in zip(tables.rail_places, tables.rail_table, strict=True)
+            if not np.isnan(potential := rail_potential(self.network, self.work, row))
         }
 
 

@@ -140,6 +140,8 @@ def _switched(row: dict[str, Any]) -> str:
     name, value = row["change"]
     if name == "units_in_service":
         return f"{value} rectifier units in service from now on"
+    if row["cause"] == "no_return":
+        return "feeds nothing: none of its return feeders is closed"
     by = {"order": "", "reclosure": ", by itself after a trip", "reopening": ", by itself"}[row["cause"]]
     return f"{str(value).replace('_', ' ')}{by}"
 
@@ -183,7 +185,9 @@ _TOLD: dict[str, Callable[[dict[str, Any]], str]] = {
     "tripped": _tripped,
     "vld_closed": lambda row: f"closes: the rail potential is {row['value']:.1f} V, above {row['limit']:g} V",
     "line_dead": lambda row: f"nothing feeds the contact line from km {row['position_km']:g} to km {row['to_km']:g}",
-    "line_live": lambda row: f"the contact line is fed again from km {row['position_km']:g} to km {row['to_km']:g}",
+    "line_live": lambda row: (
+        f"the contact line is fed again from km {row['position_km']:g} to km {row['to_km']:g}, after {row['value']:g} s"
+    ),
 }
 
 

@@ -1,7 +1,7 @@
 """The error that lumping the rails into the contact line would make, at the step with the lowest voltage of a train.
 
-Programs that know one conductor for each track add the resistance of its rails to that of its contact line. The same
-currents at the same places are solved in such a network, and the voltages compared.
+Programs that know one conductor for each track add the resistance of its own rails to that of its contact line, whatever
+joins the rails of the tracks. The same currents at the same places are solved in such a network, and the voltages compared.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ class WorstStep:
 
     def __init__(self, scenario: Scenario, names: Sequence[str], tracks: Sequence[str]) -> None:
         self._scenario, self._names, self._tracks = scenario, names, tracks
+        self._from_s = scenario.clock.start + (scenario.clock.warm_up or 0.0)
         self._lowest_v = np.inf
         self._loads: tuple[Load, ...] = ()
         self._train = ""
@@ -43,7 +44,8 @@ class WorstStep:
 
     def add(self, rows: Buffers, placed: Placed, supply: SupplyTables) -> None:
         """Look at steps, the places of whose trains are `placed`."""
-        volts = np.where(rows.trains["voltage_v"] > 0.0, rows.trains["voltage_v"], np.inf)
+        counts = (rows.trains["voltage_v"] > 0.0) & (rows.trains["time_s"] >= self._from_s - 1e-9)
+        volts = np.where(counts, rows.trains["voltage_v"], np.inf)
         if not len(volts) or volts.min() >= self._lowest_v:
             return
         worst = int(volts.argmin())
@@ -113,8 +115,9 @@ def _lumped_lines(supply: Supply, line: Line, track: Track, conductors: Sequence
         if contact is not None and rail is not None:
             shared = return_tracks(rail, line)
             here = sum(other.id in shared and other.from_km <= low < other.to_km for other in line.tracks)
-            ohm = contact_line_resistance(contact, conductors) + return_resistance(rail, here, conductors)
-            yield ContactLine(tracks=(track.id,), from_km=low, to_km=high, resistance_ohm_per_km=ohm)
+            ohm = contact_line_resistance(contact, conductors) + here * return_resistance(rail, here, conductors)
+            # Both are within the bounds of an input, their sum need not be.
+            yield ContactLine.model_construct(tracks=(track.id,), from_km=low, to_km=high, resistance_ohm_per_km=ohm)
 
 
 def _over(rows: Sequence[Row], low: float, high: float) -> Row | None:

@@ -223,7 +223,14 @@ class Recorder:
         if dark_s.max(initial=0.0) > 0.0:
             dark = [self.trains.names[k] for k in np.flatnonzero(dark_s).tolist()]
             yield f"without voltage for up to {dark_s.max():g} s: {_trains(dark)}"
-        stuck = [train["train"] for train in self.trains.status(self.now_s) if train["status"] == "stuck"]
+        dead = self.trains.on_dead_line()
+        stuck = [
+            train["train"]
+            for train in self.trains.status(self.now_s)
+            if train["status"] == "stuck" and train["train"] not in dead
+        ]
+        if dead:
+            yield f"on a dead contact line at the end: {_trains(dead)}"
         if stuck:
             yield f"stuck, since effort or power lack: {_trains(stuck)}"
 

@@ -101,9 +101,10 @@ class Run:
 
         After an interruption `outcome` still tells what was done; rows computed so far are with the writer.
         """
-        board, buffers, spare = self.board, self._new_buffers(), self._new_buffers()
+        compiled, board = self.compiled, self.board
+        buffers, spare = self._new_buffers(), self._new_buffers()
         started, block = time.perf_counter(), FIRST_BLOCK
-        advance(self.compiled.block, self.state, buffers, self.done)  # no step: kernels are compiled or taken from the cache
+        advance(compiled.block, self.state, buffers, self.done)  # no step: kernels are compiled or taken from the cache
         self.compile_seconds += time.perf_counter() - started
         started = time.perf_counter()
         with ThreadPoolExecutor(1) as recording:  # the block holds no lock: rows are recorded while the next ones are computed
@@ -131,7 +132,7 @@ class Run:
                     pending.result()
                 ahead = self.done - self.recorder.steps
                 if ahead > 0:
-                    self.recorder.add(self.recorder.steps, ahead, buffers, board.compiled.supply)
+                    self.recorder.add(self.recorder.steps, ahead, buffers, compiled.supply)
                 self.recorder.close(board.rows)
         self._closed = True
         return self.outcome()

@@ -21,11 +21,14 @@ from tractionpower.kernels.block_tables import Buffers, State, rewired_state
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import Supply
 from tractionpower.model.switchgear import Protection
-from tractionpower.supply.compile import SupplyTables
+from tractionpower.supply.compile import Stretch, SupplyTables
 from tractionpower.supply.protection import Trigger, protections
-from tractionpower.supply.states import Change, change_of, find_list, with_states
+from tractionpower.supply.states import Change, change_of, find_list, normal_value, with_states
 
 NOT_YET = 2**62
+
+MOST_KNOWN = 64
+"""So many sets of states are kept compiled."""
 
 
 @dataclass(order=True)
@@ -85,7 +88,8 @@ class Switchboard:
         heapq.heapify(self._queue)
         clock = scenario.clock
         self._start_s, self._step_s = clock.start, clock.step_s
-        self._note_stretches(clock.start, compiled.supply, compiled.supply)
+        self._dead_since: dict[tuple[str, float], float] = {}
+        self._note_stretches(clock.start, None, compiled.supply)
 
     # -- what is due ----------------------------------------------------------------------------------------------
 
@@ -164,26 +168,43 @@ class Switchboard:
     def _rewire(self, time_s: float) -> None:
         """Go over to the tables of the present states."""
         before = self.compiled
-        key = frozenset((device, name, value) for device, values in self._changes.items() for name, value in values.items())
+        moved = ((device, name, value) for device, values in self._changes.items() for name, value in values.items())
+        key = frozenset(change for change in moved if normal_value(self.scenario.supply, *change[:2]) != change[2])
         if key not in self._known:
+            if len(self._known) >= MOST_KNOWN:
+                del self._known[next(iter(self._known))]
             self._known[key] = assemble(self.scenario, before.movement, self.supply)
         self.compiled = self._known[key]
         self.state = rewired_state(self.state, before.block, self.compiled.block)
         self._note_stretches(time_s, before.supply, self.compiled.supply)
+        self._note_returns(time_s, before.supply, self.compiled.supply)
 
     @property
     def supply(self) -> Supply:
         """The supply with all devices in their present states."""
         return with_states(self.scenario.supply, {device: values.items() for device, values in self._changes.items()})
 
-    def _note_stretches(self, time_s: float, before: SupplyTables, after: SupplyTables) -> None:
+    def _note_stretches(self, time_s: float, before: SupplyTables | None, after: SupplyTables) -> None:
         """Note which stretches of contact line lose their feed or get it back; at the start those that have none."""
-        first = before is after
-        was = {(s.track, s.from_m, s.to_m): s.no_load_v > 0.0 or first for s in before.stretches}
-        changed = [s for s in after.stretches if was[s.track, s.from_m, s.to_m] != (s.no_load_v > 0.0)]
-        for track, from_km, to_km, live in _joined((s.track, *s.ends_km, s.no_load_v > 0.0) for s in changed):
+        was = {(s.track, s.from_m): s.no_load_v > 0.0 for s in before.stretches} if before is not None else {}
+        changed = [s for s in after.stretches if was.get((s.track, s.from_m), True) != (s.no_load_v > 0.0)]
+        for track, from_km, to_km, live, since in _joined(self._turned(s, time_s) for s in changed):
             kind = "line_live" if live else "line_dead"
-            self._note(kind, f"track {track}", time_s, track=track, position_km=from_km, to_km=to_km)
+            details = {"track": track, "position_km": from_km, "to_km": to_km, "value": time_s - since if live else np.nan}
+            self._note(kind, f"track {track}", time_s, **details)
+
+    def _turned(self, stretch: Stretch, time_s: float) -> tuple[str, float, float, bool, float]:
+        """Return track, ends [km], whether a stretch is live now, and since when it was or is dead [s]."""
+        key, live = (stretch.track, stretch.from_m), stretch.no_load_v > 0.0
+        since = self._dead_since.pop(key) if live else self._dead_since.setdefault(key, time_s)
+        return stretch.track, *stretch.ends_km, live, since
+
+    def _note_returns(self, time_s: float, before: SupplyTables, after: SupplyTables) -> None:
+        """Note substations that feed no more, though they are in service: no return feeder is closed."""
+        fed = (before.source_port >= 0) & (after.source_port < 0)
+        for substation in (after.substations[k] for k in np.flatnonzero(fed).tolist()):
+            if substation.feeds:
+                self._note("switched", substation.id, time_s, change=("state", "feeds nothing"), cause="no_return")
 
     def _note(self, kind: str, subject: str, time_s: float, **details: Any) -> None:
         row: dict[str, Any] = {"time_s": time_s, "kind": kind, "subject": subject, "track": ""}
@@ -193,16 +214,19 @@ class Switchboard:
         self.rows.append(row | details)
 
 
-def _joined(stretches: Iterator[tuple[str, float, float, bool]]) -> Iterator[tuple[str, float, float, bool]]:
-    """Yield stretches (track, from km, to km, live) with neighbours joined."""
-    last: tuple[str, float, float, bool] | None = None
-    for track, from_km, to_km, live in sorted(stretches):
-        if last is not None and (last[0], last[3]) == (track, live) and from_km - last[2] < 1e-3:
-            last = track, last[1], to_km, live
+Turned = tuple[str, float, float, bool, float]
+
+
+def _joined(stretches: Iterator[Turned]) -> Iterator[Turned]:
+    """Yield stretches (track, from km, to km, live, dead since) with neighbours joined."""
+    last: Turned | None = None
+    for item in sorted(stretches):
+        if last is not None and (last[0], *last[3:]) == (item[0], *item[3:]) and item[1] - last[2] < 1e-3:
+            last = (*last[:2], item[2], *last[3:])
             continue
         if last is not None:
             yield last
-        last = track, from_km, to_km, live
+        last = item
     if last is not None:
         yield last
 

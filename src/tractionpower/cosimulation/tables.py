@@ -58,7 +58,7 @@ def assemble(scenario: Scenario, movement: Movement, states: Supply) -> Compiled
     entries = np.argsort(movement.tables.trains["start_s"], kind="stable").astype(np.int64)
     block = BlockTables(
         supply.network, supply.edges, _sources(supply), *_loads(supply), supply.link_table, supply.terms,
-        supply.rail_nodes, supply.earth_edge, supply.triggers, supply.section_table, clock,
+        supply.rail_table, supply.earth_edge, supply.triggers, supply.section_table, clock,
         movement.tables, fleet, ways, entries,
     )  # fmt: skip
     return CompiledScenario(movement, supply, block)

@@ -203,6 +203,12 @@ class TrainRecorder:
     def _calls(self, k: int) -> tuple[JourneyCall, ...]:
         return calls_of(self.movement.runs[k], self._state.trains, int(self._block.trains.trains[k]["first_stop"]))
 
+    def on_dead_line(self) -> list[str]:
+        """Return the trains that stand or coast on a contact line that nothing feeds."""
+        movers = self._state.trains.movers
+        dead = np.isfinite(movers["lost_s"]) & (movers["status"] != GONE)
+        return [self.names[k] for k in np.flatnonzero(dead).tolist()]
+
     def profile(self) -> dict[str, Any]:
         """Return voltages at pantographs along the line, as columns of table ``profile``; only where trains were."""
         seen = self._bin_v[:, 1] > 0.0

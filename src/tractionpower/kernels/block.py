@@ -14,6 +14,7 @@ from tractionpower.kernels.jit import njit
 from tractionpower.kernels.motion import TINY_S
 from tractionpower.kernels.network import CONVERGED, FLAG_A, NOT_CONVERGED, solve
 from tractionpower.kernels.ports import port_current
+from tractionpower.kernels.rail_potential import rail_potential
 from tractionpower.kernels.spans import place_ports
 
 MOST_REVISIONS = 4
@@ -93,7 +94,8 @@ def _watch(tables, state, buffers, row, t):
 def _restore_loads(tables, state):
     """Write what the state says into the tables, which another run may have used since."""
     for k in range(tables.loads.shape[0]):
-        tables.network.ports[tables.loads[k].port].scale = state.result[0].factor * state.load_scale[k]
+        port = tables.network.ports[tables.loads[k].port]
+        port.scale = state.result[0].factor * state.load_scale[k] if port.start_v > 0.0 else 0.0
 
 
 @njit
@@ -115,7 +117,8 @@ def _switch_loads(tables, state, t):
 def _solve_step(tables, state, warm):
     network, work, result = tables.network, state.work, state.result[0]
     for k in range(tables.loads.shape[0]):  # the step before may have cut them
-        network.ports[tables.loads[k].port].scale = state.load_scale[k]
+        port = network.ports[tables.loads[k].port]
+        port.scale = state.load_scale[k] if port.start_v > 0.0 else 0.0  # nothing feeds a dead line
     place_ports(network, work)
     status, iterations, worst, factor, port = solve(network, work, warm)
     heat, gap, leaked = conductor_flows(network, work, state.balance)
@@ -172,7 +175,7 @@ def _record(tables, state, buffers, row):
     for k in range(tables.links.shape[0]):
         buffers.link_a[row, k] = link_current(tables.links, tables.terms, k, work, tables.edges, network.ports, network.segments)
     for k in range(tables.rails.shape[0]):
-        buffers.rail_v[row, k] = work.node_v[tables.rails[k]] if tables.rails[k] >= 0 else np.nan
+        buffers.rail_v[row, k] = rail_potential(network, work, tables.rails[k])
     for k in range(tables.earth.shape[0]):
         buffers.earth_a[row, k] = 0.0
         if tables.earth[k] >= 0:

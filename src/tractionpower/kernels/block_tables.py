@@ -71,7 +71,7 @@ class BlockTables(NamedTuple):
     links, terms
         Breakers and switches whose currents are recorded, record array of `LINK`, and their terms, of `TERM`.
     rails
-        Nodes whose potential against earth is recorded, -1 where it has none, shape (places,).
+        Places whose rail potential is recorded, record array of `RAIL`.
     earth
         Edge of each connection with earth, -1 where it is open, shape (connections,).
     triggers
@@ -95,7 +95,7 @@ class BlockTables(NamedTuple):
     load_steps: NDArray[np.void]
     links: NDArray[np.void]
     terms: NDArray[np.void]
-    rails: NDArray[np.int64]
+    rails: NDArray[np.void]
     earth: NDArray[np.int64]
     triggers: NDArray[np.void]
     sections: NDArray[np.void]

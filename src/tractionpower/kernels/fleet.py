@@ -78,6 +78,9 @@ def ask_line(tables, state, t):
         _place(tables, state, k)
         port = tables.network.ports[tables.fleet[k].port]
         is_dead = not port.start_v > 0.0  # no source reaches the line
+        mover = state.trains.movers[k]
+        if mover.voltage_v == 0.0 and not is_dead:  # the line is live again, and nobody has taken anything from it yet
+            mover.voltage_v = port.start_v
         wish(tables.trains, state.trains, k, t, h, is_dead)
         port.scale = 0.0 if is_dead else 1.0
         if fixed_v > 0.0:

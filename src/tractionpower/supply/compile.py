@@ -25,8 +25,9 @@ from tractionpower.supply.links import link_tables
 from tractionpower.supply.numbering import find_returning, number_nodes
 from tractionpower.supply.probes import find_probes
 from tractionpower.supply.protection import Trigger, find_triggers, trigger_table
+from tractionpower.supply.rail_places import RailPlace, find_rail_places, rail_table
 from tractionpower.supply.span_tables import span_tables
-from tractionpower.supply.topology import Link, RailPlace, Topology
+from tractionpower.supply.topology import Link, Topology
 from tractionpower.supply.wiring import build_topology
 
 _DEAD = (-1, -1, -1)
@@ -93,9 +94,9 @@ class SupplyTables:
     sections, section_table
         Track and kilometre of the places whose voltage is recorded, so that the voltage runs straight between them; and
         where the solver finds it, record array of `SECTION`.
-    rail_places, rail_nodes
-        Places of the rails whose potential is recorded, none where nothing is joined with earth; and their nodes, -1
-        where they have no potential against earth in the present state.
+    rail_places, rail_table
+        Places of the rails whose potential is recorded, none where nothing is joined with earth; and where the solver
+        finds it, record array of `RAIL`.
     earth_devices, earth_edge
         Earthings and voltage-limiting devices by identifier, each in this order, and their edges, -1 where open.
     watched, triggers
@@ -124,7 +125,7 @@ class SupplyTables:
     sections: tuple[tuple[str, float], ...]
     section_table: NDArray[np.void]
     rail_places: tuple[RailPlace, ...]
-    rail_nodes: NDArray[np.int64]
+    rail_table: NDArray[np.void]
     earth_devices: tuple[str, ...]
     earth_edge: NDArray[np.int64]
     watched: tuple[Trigger, ...]
@@ -166,6 +167,7 @@ class _Compiler:
         self.returning = find_returning(self.topology)
         self.sources = [s for s in self.substations if s.feeds and s.id in self.returning]
         self.probes = find_probes(self.topology, self.loads)
+        self.rail_places = find_rail_places(self.topology, self.loads)
         self.nodes = number_nodes(self.topology, self.sources)
         self.structure = self.nodes.structure
         self.edge_rows = [(self.node(a), self.node(b), 1.0 / ohm) for a, b, ohm in self.topology.edges()]
@@ -199,12 +201,12 @@ class _Compiler:
             terms=terms,
             sections=tuple((place.track, place.km) for place in topology.sections) + tuple(self.probes),
             section_table=self._section_table(),
-            rail_places=tuple(topology.rail_places) if topology.earth is not None else (),
-            rail_nodes=self._rail_nodes(),
+            rail_places=self.rail_places,
+            rail_table=rail_table(topology, self.rail_places, self.nodes, self.first_conductor),
             earth_devices=tuple(item.id for item in topology.earth_links),
             earth_edge=self._earth_edges(),
             watched=watched,
-            triggers=trigger_table(topology, watched),
+            triggers=trigger_table(topology, self.rail_places, watched),
             stretches=tuple(self._stretches()),
             train_port=np.arange(len(ports) - len(train_segments), len(ports), dtype=np.int64),
             voltages=self.voltages,
@@ -247,11 +249,6 @@ class _Compiler:
         items = self.topology.earth_links
         numbers = iter(self._edge_numbers()[len(self.edge_rows) - sum(item.closed for item in items) :])
         return np.array([next(numbers) if item.closed else -1 for item in items], np.int64)
-
-    def _rail_nodes(self) -> NDArray[np.int64]:
-        if self.topology.earth is None:
-            return np.zeros(0, np.int64)
-        return np.array([self.node(p.node) if self._is_earthed(p.node) else -1 for p in self.topology.rail_places], np.int64)
 
     def _section_table(self) -> NDArray[np.void]:
         places = self.topology.sections

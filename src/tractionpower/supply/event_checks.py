@@ -9,7 +9,7 @@ from typing import Any
 from tractionpower.errors import Problem
 from tractionpower.io.wording import did_you_mean
 from tractionpower.model.base import format_time
-from tractionpower.model.supply import Substation
+from tractionpower.model.supply import Substation, Supply
 from tractionpower.model.switchgear import SwitchEvent
 from tractionpower.supply.site import Site
 from tractionpower.supply.states import SWITCHED, Change, change_of, with_states
@@ -42,7 +42,9 @@ class Switchgear:
                 self.lists.setdefault(item.id, []).append(name)
                 self.items[item.id] = item
         for device in (device for feeders in self.feeders.values() for device in feeders):
-            self.lists.setdefault(device, ["feeders"])
+            lists = self.lists.setdefault(device, [])
+            if "feeders" not in lists:
+                lists.append("feeders")
 
     def normal(self, device: str, field: str) -> str | int:
         """Return the normal state of a device, or the number of its units in service."""
@@ -57,7 +59,7 @@ def check_events(site: Site) -> list[Problem]:
     """Return events that name no device or state, contradict each other, or change nothing."""
     gear = Switchgear(site)
     problems, valid = _sifted(site, gear)
-    return problems + _check_contradictions(valid) + _check_changes(gear, valid)
+    return problems + _check_contradictions(valid) + _check_changes(gear, valid, _moving_by_themselves(site.supply))
 
 
 def _sifted(site: Site, gear: Switchgear) -> tuple[list[Problem], list[Timed]]:
@@ -159,14 +161,24 @@ def _check_contradictions(events: list[Timed]) -> list[Problem]:
     return problems
 
 
-def _check_changes(gear: Switchgear, events: list[Timed]) -> list[Problem]:
+def _moving_by_themselves(supply: Supply) -> set[str]:
+    """Return the breakers that trip and the devices that close, whose states nobody knows beforehand."""
+    trips = {row.id for row in supply.feeders if row.trip_current_a is not None}
+    stations = {station.id: station.trip_current_a for station in supply.substations}
+    stations |= {cabin.id: cabin.trip_current_a for cabin in supply.section_cabins}
+    for name in (name for name, trip_a in stations.items() if trip_a is not None):
+        trips |= {event.device for event in supply.switch_events if event.device.startswith(f"{name} ")}
+    return trips | {device.id for device in supply.voltage_limiting_devices}
+
+
+def _check_changes(gear: Switchgear, events: list[Timed], moving: set[str]) -> list[Problem]:
     """Return a warning for each event that sets what the device has already."""
     now: dict[tuple[str, str], str | int] = {}
     problems = []
     for index, event in events:
         field, value = change_of(event)
         key = event.device, field
-        if now.setdefault(key, gear.normal(*key)) == value:
+        if now.setdefault(key, gear.normal(*key)) == value and event.device not in moving:
             what = f"{value!r}" if field == "state" else f"with {value} units in service"
             found = f"{event.device} is {what} already at {format_time(event.time)}"
             remedy = "the event changes nothing; leave it out, or correct it"

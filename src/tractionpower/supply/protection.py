@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tractionpower.kernels.block_tables import OVERCURRENT, RAIL_POTENTIAL, TRIGGER
 from tractionpower.model.supply import Supply
 from tractionpower.model.switchgear import Protection
+from tractionpower.supply.rail_places import RailPlace
 from tractionpower.supply.topology import Link, Topology
 
 
@@ -53,10 +54,10 @@ def find_triggers(supply: Supply, links: Sequence[Link]) -> tuple[Trigger, ...]:
     return tuple(found)
 
 
-def trigger_table(topology: Topology, watched: Sequence[Trigger]) -> NDArray[np.void]:
+def trigger_table(topology: Topology, places: Sequence[RailPlace], watched: Sequence[Trigger]) -> NDArray[np.void]:
     """Return what the triggers watch, record array of `TRIGGER`; where breaker or device has done its work: nothing."""
     earth = {item.id: item for item in topology.earth_links}
-    place_of = {topology.find(place.node): k for k, place in reversed([*enumerate(topology.rail_places)])}
+    place_of = {topology.find(place.node): k for k, place in reversed([*enumerate(places)]) if place.span < 0}
     rows: list[tuple[int, int, float, float]] = []
     for trigger in watched:
         if trigger.kind == "overcurrent":

@@ -69,6 +69,16 @@ def with_states(supply: Supply, changes: Mapping[str, Iterable[Change]]) -> Supp
     return supply.model_copy(update={name: _changed(supply, name, items) for name, items in updates.items()})
 
 
+def normal_value(supply: Supply, device: str, name: str) -> str | int | None:
+    """Return the value that a field of a device has as declared; a feeder without a row is closed."""
+    found = find_list(supply, device)
+    for row in getattr(supply, found) if found is not None else ():
+        if row.id == device:
+            value: str | int | None = getattr(row, name)
+            return row.units if name == "units_in_service" and value is None else value
+    return "closed"
+
+
 def _changed(supply: Supply, name: str, updates: Mapping[str, Mapping[str, Any]]) -> tuple[Declaration, ...]:
     rows = list(getattr(supply, name))
     if name == "feeders":

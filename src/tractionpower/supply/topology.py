@@ -47,6 +47,7 @@ class Span:
     length_m: float
     conductors: tuple[Conductor, ...]
     tracks: tuple[str, ...]  # of the contact lines
+    rail_tracks: tuple[str, ...]  # of the return conductor
 
     @property
     def rail(self) -> Conductor:
@@ -110,31 +111,6 @@ class Section:
     rail: int
 
 
-@dataclass(frozen=True, slots=True)
-class RailPlace:
-    """A place of a return conductor whose potential is recorded.
-
-    Attributes
-    ----------
-    tracks
-        Tracks of the conductor, joined by blanks.
-    km
-        Place.
-    leakage_s_per_m
-        Conductance of the conductor to remote earth [S/m].
-    length_m
-        Length that the place stands for: half of the spans beside it [m].
-    node
-        Its node.
-    """
-
-    tracks: str
-    km: float
-    leakage_s_per_m: float
-    length_m: float
-    node: int
-
-
 @dataclass
 class Topology:
     """The supply as a graph; nodes are numbers, of which `find` tells those that are one."""
@@ -150,7 +126,6 @@ class Topology:
     busbars: dict[str, Busbar] = field(default_factory=dict)
     returns: list[tuple[int, int, float]] = field(default_factory=list)  # common return feeders
     sections: list[Section] = field(default_factory=list)
-    rail_places: list[RailPlace] = field(default_factory=list)
 
     @cached_property
     def plain(self) -> Merger:
@@ -246,7 +221,6 @@ def lay_spans(supply: Supply, line: Line, conductors: Sequence[ConductorRow], cu
             for track in bundle.tracks:
                 nodes = [topology.nodes("rail", rails.number, bundle.tracks, cut) for rails in bundle.rails_at(track, cut)]
                 topology.joins += [(nodes[0], node) for node in nodes[1:] if node != nodes[0]]
-        _note_rail_places(topology, bundle, length)
     return topology
 
 
@@ -266,18 +240,4 @@ def _add_span(topology: Topology, bundle: Bundle, piece: int, rails: Rails, leng
     if rails.siemens_per_m > 0.0:
         nodes(EARTH)
     conductors.append(Conductor(0.0 if short else rails.ohm_per_m, rails.siemens_per_m, left, right))
-    topology.spans.append(Span(*bundle.pieces[piece], length, tuple(conductors), tracks))
-
-
-def _note_rail_places(topology: Topology, bundle: Bundle, length: dict[str, list[float]]) -> None:
-    last = len(bundle.cuts) - 1
-    for cut, km in enumerate(bundle.cuts):
-        beside: dict[int, Rails] = {}
-        around: dict[int, float] = {}
-        for piece in (cut - 1, cut):
-            for rails in bundle.rails[piece] if 0 <= piece < last else ():
-                beside.setdefault(rails.number, rails)
-                around[rails.number] = around.get(rails.number, 0.0) + 0.5 * length[rails.tracks[0]][piece]
-        for number, rails in sorted(beside.items()):
-            node = topology.nodes("rail", number, bundle.tracks, cut)
-            topology.rail_places.append(RailPlace(" ".join(rails.tracks), km, rails.siemens_per_m, around[number], node))
+    topology.spans.append(Span(*bundle.pieces[piece], length, tuple(conductors), tracks, rails.tracks))
