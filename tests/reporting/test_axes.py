@@ -61,3 +61,18 @@ def test_devices_on_top_of_each_other_share_a_sign(axes, no_overlap):
 def test_a_clock_says_whether_it_has_seconds(axes, end, label):
     set_clock(axes, 0.0, end)
     assert clock_label(axes) == label
+
+
+def test_names_of_near_limits_do_not_overlap(no_overlap):
+    figure = new_figure(6.0, 2.5)
+    axes = figure.add_subplot()
+    axes.set_ylim(-200.0, 4500.0)
+    draw_limits(axes, make_scenario())
+    assert len(axes.texts) == 4
+    no_overlap(figure, axes.texts)
+
+
+def test_a_range_with_a_dead_line_begins_little_below_zero():
+    low, high = voltage_range(0.0, 3600.0)
+    assert -300.0 < low < 0.0
+    assert high > 3600.0

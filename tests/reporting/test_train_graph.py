@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from fake_journeys import make_journey
 
-from tractionpower.reporting.journeys import line_of, planned_times, stations_of_all, write_journey_figures
+from tractionpower.reporting.journeys import panels_of, write_journey_figures
 from tractionpower.reporting.train_graph import (
     MOST_CIRCLES,
     MOST_NAMES,
+    GraphPanel,
     GraphPlaces,
     TrainLine,
     broken_where_it_jumps,
@@ -17,8 +18,7 @@ from tractionpower.studies.journeys import JourneyOutcome
 
 
 def graph_of(journeys, line, title=""):
-    lines = [line_of(journey) for journey in journeys]
-    return train_graph(lines, planned_times(journeys), GraphPlaces(stations_of_all(journeys, line)), title)
+    return train_graph(panels_of(journeys, line, [[track.id for track in line.tracks]]), title)
 
 
 @pytest.fixture
@@ -72,7 +72,7 @@ def test_names_of_trains_do_not_overlap(line, no_overlap):
 
 
 def test_figures_of_the_trains_shown_and_none_of_an_earlier_run(tmp_path, line, journeys):
-    scenario = type("Study", (), {"line": line, "name": "a study"})
+    scenario = type("Study", (), {"line": line, "name": "a study", "supply": None})
     outcome = JourneyOutcome(tuple(journeys), 3000.0)
     paths = write_journey_figures(outcome, scenario, tmp_path, ["1", "IC 22/1"])
     names = {path.name for path in paths}
@@ -87,9 +87,9 @@ def test_figures_of_the_trains_shown_and_none_of_an_earlier_run(tmp_path, line, 
 def test_of_many_trains_lines_are_thin_and_names_and_circles_stay_away():
     many = [TrainLine(f"{k}", 60.0 * k + np.linspace(0.0, 900.0, 91), np.linspace(0.0, 20.0, 91)) for k in range(MOST_NAMES + 1)]
     circles = [(60.0 * k, 0.0) for k in range(MOST_CIRCLES + 1)]
-    (axes,) = train_graph(many, circles, GraphPlaces(), "").axes
+    (axes,) = train_graph([GraphPanel("", many, circles)], "").axes
     assert (len(axes.texts), drawn(axes, "planned (timetable)")) == (0, [])
-    (fewer,) = train_graph(many[:-1], circles[:-1], GraphPlaces(), "").axes
+    (fewer,) = train_graph([GraphPanel("", many[:-1], circles[:-1])], "").axes
     assert (len(fewer.texts) > 10, len(drawn(fewer, "planned (timetable)"))) == (True, 1)
     assert axes.lines[0].get_linewidth() < fewer.lines[0].get_linewidth()
 
@@ -97,7 +97,7 @@ def test_of_many_trains_lines_are_thin_and_names_and_circles_stay_away():
 def test_substations_and_cabins_stand_on_the_left_axis():
     line = TrainLine("1", np.array([0.0, 600.0]), np.array([0.0, 20.0]))
     places = GraphPlaces(devices=[(0.0, "A", True), (10.0, "C", False), (20.0, "B", True)])
-    (axes,) = train_graph([line], [], places, "").axes
+    (axes,) = train_graph([GraphPanel("", [line], [], places)], "").axes
     (substations,), (cabins,) = drawn(axes, "substation"), drawn(axes, "section cabin")
     assert (list(substations.get_ydata()), list(cabins.get_ydata())) == ([0.0, 20.0], [10.0])
     assert set(substations.get_xdata()) == {0.0}

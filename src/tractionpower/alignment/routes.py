@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -35,15 +35,20 @@ def check_route(path: str, route: Sequence[Leg], line: Line, axes: Axes) -> list
     return problems
 
 
-def stop_distance(path: RoutePath, station: Station, *, from_m: float = 0.0) -> float | None:
+def stop_distance(
+    path: RoutePath, station: Station, *, from_m: float = 0.0, tracks: Collection[str] | None = None
+) -> float | None:
     """Return where the front of a train stops at a station [m], or None if the route does not come there.
 
     It is the first place of the route on one of the tracks of the station: the kilometre that its `stop_km` gives for
-    track and direction, else for the track, else that of the station. `from_m` leaves out what lies before it.
+    track and direction, else for the track, else that of the station. `from_m` leaves out what lies before it, `tracks`
+    what lies on other tracks.
     """
     stops = station.stop_km or {}
     for leg in path.legs:
         track = leg.axis.track
+        if tracks is not None and track not in tracks:
+            continue
         km = stops.get(f"{track} {leg.direction}", stops.get(track, station.km))
         if (station.tracks is None or track in station.tracks) and leg.axis.contains(km):
             found = leg.distance(leg.axis.metre(km))

@@ -3,17 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from tractionpower.model.limits import find_limit
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.labels import LETTER, clock, clock_ticks, fitting
+from tractionpower.reporting.labels import LETTER, LINE, clock, clock_ticks, fitting
 from tractionpower.reporting.style import GREY, INK
 
 LIMITS = {"u_min2": "U_min2", "u_n": "U_n", "u_max1": "U_max1", "u_max2": "U_max2"}
 """Limits of the voltage that are drawn, and how they are written."""
+
+
+DEAD_V = 1.0
+"""A line with no more than this is dead [V]."""
+
+
+def panels_of_lines(figure: Figure, lines: Sequence[Sequence[str]]) -> list[Axes]:
+    """Return a panel for each track, one below the other; those of a line share its kilometres, all share their values."""
+    count = sum(len(tracks) for tracks in lines)
+    panels: list[Axes] = []
+    for tracks in lines:
+        first = None
+        for track in tracks:
+            axes = figure.add_subplot(count, 1, len(panels) + 1, sharex=first, sharey=panels[0] if panels else None)
+            axes.tick_params(labelbottom=track == tracks[-1])
+            first = first or axes
+            panels.append(axes)
+    return panels
+
+
+def with_margin(low: float, high: float) -> tuple[float, float]:
+    """Return the ends of an axis for places between two kilometres [km]."""
+    margin = 0.01 * max(high - low, 0.1)
+    return low - margin, high + margin
 
 
 def set_clock(axes: Axes, begin_s: float, end_s: float, most: int = 10) -> None:
@@ -29,9 +55,12 @@ def clock_label(axes: Axes) -> str:
 
 
 def voltage_range(lowest: float, highest: float, room: float = 0.3) -> tuple[float, float]:
-    """Return from where to where an axis shows voltages between `lowest` and `highest` [V], with a share of `room` at both."""
+    """Return from where to where an axis shows voltages between `lowest` and `highest` [V], with a share of `room` at both.
+
+    Below zero there is little of it, so that a dead line shows.
+    """
     margin = room * max(highest - lowest, 400.0)
-    return lowest - margin, highest + margin
+    return (lowest - margin if lowest > margin else min(lowest, 0.0) - 0.2 * margin), highest + margin
 
 
 def limits_between(scenario: Scenario, low: float, high: float) -> list[tuple[str, float]]:
@@ -46,13 +75,24 @@ def limits_between(scenario: Scenario, low: float, high: float) -> list[tuple[st
 
 def draw_limits(axes: Axes, scenario: Scenario, *, names: bool = True) -> None:
     """Draw the limits of the voltage within the vertical axis, with their names right of the axes."""
-    for shown, value in limits_between(scenario, *axes.get_ylim()):
+    low, high = axes.get_ylim()
+    limits = sorted(limits_between(scenario, low, high), key=lambda limit: limit[1])
+    inches = (high - low) / max(axes.get_window_extent().height / axes.figure.dpi, 0.1)
+    gaps = [(after - value) / inches for (_, value), (_, after) in pairwise(limits)]
+    for k, (shown, value) in enumerate(limits):
         axes.axhline(value, color=GREY, linewidth=0.9, linestyle=(0, (5, 3)), zorder=1.5)
-        if names:
-            axes.annotate(
-                f"{shown}\n{value:g} V", (1.0, value), (3, 0), xycoords=("axes fraction", "data"),
-                textcoords="offset points", ha="left", va="center", color=INK, fontsize=7.5, linespacing=1.0,
-            )  # fmt: skip
+        if not names:
+            continue
+        # Names of near limits stand in one line each, that of the upper one above it.
+        close = [bool(gap < 1.4 * LINE) for gap in (*gaps[k - 1 : k], *gaps[k : k + 1])]
+        apart = "\n" if not any(close) else " "
+        above = k > 0 and gaps[k - 1] < 1.2 * LINE
+        below = k < len(gaps) and gaps[k] < 1.2 * LINE
+        axes.annotate(
+            f"{shown}{apart}{value:g} V", (1.0, value), (3, 0), xycoords=("axes fraction", "data"),
+            textcoords="offset points", ha="left", va="bottom" if above else "top" if below else "center", color=INK,
+            fontsize=7.5, linespacing=1.0,
+        )  # fmt: skip
 
 
 def mark_devices(axes: Axes, devices: Sequence[tuple[float, str, bool]], inches: float, *, names: bool = True) -> None:

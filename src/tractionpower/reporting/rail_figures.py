@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import matplotlib as mpl
@@ -13,8 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tractionpower.model.limits import Limit, common_limits
-from tractionpower.model.supply import SectionCabin, Substation
-from tractionpower.reporting.axes import clock_label, mark_devices, set_clock
+from tractionpower.reporting.axes import clock_label, mark_devices, panels_of_lines, set_clock, with_margin
 from tractionpower.reporting.labels import LETTER, LINE, fitting
 from tractionpower.reporting.run_data import RunData
 from tractionpower.reporting.series import interval, peaks_kept
@@ -45,25 +44,29 @@ def rail_potential_along_line(data: RunData) -> Figure | None:
     profile = data.table("rail_profile")
     if profile is None or not np.isfinite(profile["highest_potential_v"].to_numpy(float)).any():
         return None
-    tracks = _chosen(profile.assign(peak=profile[["lowest_potential_v", "highest_potential_v"]].abs().max(axis=1)), "peak")
+    lines = data.places.by_line(
+        _chosen(profile.assign(peak=profile[["lowest_potential_v", "highest_potential_v"]].abs().max(axis=1)), "peak")
+    )
+    tracks = [track for line in lines for track in line]
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 2.2 + (3.2 if len(tracks) == 1 else 2.5) * len(tracks))
-        panels = list(figure.subplots(len(tracks), sharex=True, sharey=True, squeeze=False)[:, 0])
-        for axes, track in zip(panels, tracks, strict=True):
+        figure = new_figure(WIDTH, 1.2 + len(lines) + (3.2 if len(tracks) == 1 else 2.5) * len(tracks))
+        panels = dict(zip(tracks, panels_of_lines(figure, lines), strict=True))
+        for track, axes in panels.items():
             _draw_profile(axes, profile[profile["track"] == track].sort_values("km", kind="stable"))
             axes.set_ylabel(f"{_told(track)}\nrail potential [V]")
         low, high = float(profile["lowest_potential_v"].min()), float(profile["highest_potential_v"].max())
         peaks = _peaks_under_trains(data)
         low, high = min([low, *(value for *_, value in peaks)]), max([high, *(value for *_, value in peaks)])
-        panels[0].set_xlim(*_ends(profile["km"]))
-        panels[0].set_ylim(*_room(low, high, _limits(data)))
-        for axes, track in zip(panels, tracks, strict=True):
-            _draw_limits(axes, _limits(data))
-            mark_devices(axes, _devices(data, track), WIDTH - 1.4, names=axes is panels[0])
-            _mark_peaks(axes, peaks, track)
-        _name_stations(panels[-1], data).set_xlabel("kilometre of the line [km]")
+        panels[tracks[0]].set_ylim(*_room(low, high, _limits(data)))
+        for line in lines:
+            panels[line[0]].set_xlim(*with_margin(*data.places.span(profile, line)))
+            for track in line:
+                _draw_limits(panels[track], _limits(data))
+                mark_devices(panels[track], _devices(data, track), WIDTH - 1.4, names=track == line[0])
+                _mark_peaks(panels[track], peaks, track)
+            _name_stations(panels[line[-1]], data, line).set_xlabel("kilometre of the line [km]")
         figure.suptitle(f"{data.title}: rail potential along the line{_outside(data, low, high)}", x=0.01, ha="left", fontsize=11)
-        figure.legend(*_once(panels), loc="outside lower center", ncols=4, fontsize=8)
+        figure.legend(*_once(list(panels.values())), loc="outside lower center", ncols=4, fontsize=8)
         return figure
 
 
@@ -113,7 +116,7 @@ def _draw_limits(axes: Axes, limits: Sequence[tuple[str, Limit]]) -> None:
 
 
 def _volts(value: float, digits: int = 1) -> str:
-    return f"{value:.{digits}f} V".replace("-", "\N{MINUS SIGN}")
+    return f"{round(value, digits) + 0.0:.{digits}f} V".replace("-", "\N{MINUS SIGN}")
 
 
 def _outside(data: RunData, low: float, high: float) -> str:
@@ -153,8 +156,8 @@ def rail_potential_over_time(data: RunData) -> Figure | None:
     rails = data.table("rails")
     if rails is None or rails["time_s"].nunique() < 2 or not np.isfinite(rails["potential_v"].to_numpy(float)).any():
         return None
-    tracks = _chosen(rails.assign(peak=rails["potential_v"].abs()), "peak")
-    maps = {track: grid for track in tracks if len(grid := _grid(rails, track)) > 1}
+    lines = data.places.by_line(_chosen(rails.assign(peak=rails["potential_v"].abs()), "peak"))
+    maps = {track: grid for line in lines for track in line if len(grid := _grid(rails, track)) > 1}
     with mpl.rc_context(STYLE):
         figure = new_figure(WIDTH, 4.6 + 2.3 * len(maps))
         ratios = [1.25, *([1.0] * len(maps))]
@@ -171,10 +174,11 @@ def rail_potential_over_time(data: RunData) -> Figure | None:
         return figure
 
 
-def worst_places(rails: pd.DataFrame, most: int = 3) -> list[tuple[str, float]]:
+def worst_places(rails: pd.DataFrame, number_of: Callable[[str], int] = lambda _: 0, most: int = 3) -> list[tuple[str, float]]:
     """Return track and kilometre of the places with the highest and the lowest potential, and then others.
 
-    They lie apart from each other, or on rails that bonds do not hold at the same potential.
+    They lie apart from each other, or on rails that bonds do not hold at the same potential; `number_of` tells the line of
+    a track: kilometres of different lines are not near each other.
     """
     groups = rails.groupby(["track", "km"], observed=True)["potential_v"]
     reach = groups.agg(lambda volts: float(volts.abs().max())).sort_values(ascending=False, kind="stable")
@@ -182,7 +186,7 @@ def worst_places(rails: pd.DataFrame, most: int = 3) -> list[tuple[str, float]]:
     for track, km in (groups.max().idxmax(), groups.min().idxmin(), *reach.index):
         if len(found) == most:
             break
-        near = [other for other in found if abs(other[1] - km) < APART_KM]
+        near = [other for other in found if number_of(other[0]) == number_of(track) and abs(other[1] - km) < APART_KM]
         beside = [reach.get((other, km), reach[other, at]) for other, at in near]
         differs = all(abs(volts - reach[track, km]) > ALIKE * reach[track, km] for volts in beside)
         if differs and track not in [other for other, _ in near]:
@@ -193,7 +197,7 @@ def worst_places(rails: pd.DataFrame, most: int = 3) -> list[tuple[str, float]]:
 def _draw_worst(axes: Axes, data: RunData, rails: pd.DataFrame) -> None:
     low = high = 0.0
     axes.axhline(0.0, color=INK, linewidth=0.7)
-    for number, (track, km) in enumerate(worst_places(rails)):
+    for number, (track, km) in enumerate(worst_places(rails, data.places.number_of)):
         own = rails[(rails["track"] == track) & (rails["km"] == km)].sort_values("time_s", kind="stable")
         volts = own["potential_v"].to_numpy(float)
         shown = peaks_kept(volts, POINTS)
@@ -248,10 +252,10 @@ def _name_devices(axes: Axes, devices: Sequence[tuple[float, str, bool]]) -> Non
         )  # fmt: skip
 
 
-def _name_stations(axes: Axes, data: RunData) -> Any:
+def _name_stations(axes: Axes, data: RunData, line: Sequence[str]) -> Any:
     """Name the stations below the axes and return what stands lowest; names that would overlap stand upright, and some go."""
     low, high = axes.get_xlim()
-    stations = sorted((s.km, s.name or s.id) for s in data.scenario.line.stations if low <= s.km <= high)
+    stations = [each for each in data.places.stations(_tracks(line)) if low <= each[0] <= high]
     if not stations:
         return axes
     per_inch, places = (high - low) / (WIDTH - 1.4), [km for km, _ in stations]
@@ -276,15 +280,12 @@ def _told(tracks: str) -> str:
 
 
 def _devices(data: RunData, tracks: str) -> list[tuple[float, str, bool]]:
-    supply, own = data.scenario.supply, set(tracks.split())
-    devices: tuple[Substation | SectionCabin, ...] = (*supply.substations, *supply.section_cabins)
-    near = [each for each in devices if each.tracks is None or own.intersection(each.tracks)]
-    return sorted((each.km, each.id, isinstance(each, Substation)) for each in near)
+    return data.places.devices(_tracks([tracks]))
 
 
-def _ends(km: pd.Series) -> tuple[float, float]:
-    margin = 0.01 * max(float(km.max() - km.min()), 0.1)
-    return float(km.min()) - margin, float(km.max()) + margin
+def _tracks(conductors: Sequence[str]) -> set[str]:
+    """Return the tracks of return conductors, each named by its tracks."""
+    return {*conductors, *(track for conductor in conductors for track in conductor.split())}
 
 
 def _once(panels: Sequence[Axes]) -> tuple[list[Any], list[str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,13 +12,21 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from tractionpower.alignment.path import RoutePath
+from tractionpower.alignment.profile import PathLeg
 from tractionpower.alignment.routes import stop_distance
 from tractionpower.model.line import Line
-from tractionpower.model.supply import SectionCabin, Substation, Supply
+from tractionpower.model.supply import Substation
 from tractionpower.reporting.labels import LETTER, fitting
-from tractionpower.reporting.style import GREY, INK, ORANGE, PALE
+from tractionpower.reporting.style import GREY, INK, ORANGE, PALE, PURPLE
+from tractionpower.supply.site import Site
 
 Array = NDArray[Any]
+
+MOST_JOINTS = 2
+"""With more changes to other kilometres the axis does not tell them."""
+
+BESIDE_M = 100.0
+"""Places where one device meets two tracks of a route count as one if they are this near to each other [m]."""
 
 CEILING = "ceiling: limits under the\nwhole train, braking curves"
 
@@ -34,12 +43,15 @@ class Course:
         Length of the route [m].
     label
         Label of the axis.
+    joints_m
+        Distances at which the kilometres jump from one leg to the next [m].
     """
 
     begin: float
     sign: int
     length_m: float
     label: str
+    joints_m: tuple[float, ...] = ()
 
     def at(self, place: Any) -> Any:
         """Return the value of the axis [km] at distances `place` from the start of the route [m]."""
@@ -58,10 +70,39 @@ def course_of(path: RoutePath) -> Course:
     _, km = path.places(probe)
     sign = 1 if km[-1] >= km[0] else -1
     if np.abs(km - km[0] - sign * probe / 1000.0).max() > 0.001:  # the kilometrage jumps somewhere
-        return Course(0.0, 1, path.length_m, "distance from the start of the route [km]")
+        joints = [(before, leg) for before, leg in pairwise(path.legs) if abs(_ends(before)[1] - _ends(leg)[0]) > 0.001]
+        label = "distance from the start of the route [km]"
+        if 0 < len(joints) <= MOST_JOINTS:
+            starts = [path.legs[0], *(leg for _, leg in joints)]
+            ends = [*(before for before, _ in joints), path.legs[-1]]
+            ways = [
+                f"track {leg.axis.track} km {_ends(leg)[0]:g} to {_end_in_words(leg, end)}"
+                for leg, end in zip(starts, ends, strict=True)
+            ]
+            label += f":\n{', then '.join(ways)}"
+        return Course(0.0, 1, path.length_m, label, tuple(leg.start_m for _, leg in joints))
     names = list(dict.fromkeys(leg.axis.track for leg in path.legs))
     tracks = f"track{'s' if len(names) > 1 else ''} {', '.join(names)}"
     return Course(float(km[0]), sign, path.length_m, f"kilometre of the line [km], {tracks}")
+
+
+def _ends(leg: PathLeg) -> tuple[float, float]:
+    """Return the kilometres at which a leg begins and ends [km]."""
+    begin, end = leg.axis.km(leg.track_m(np.array([leg.start_m, leg.end_m])))
+    return round(float(begin), 6), round(float(end), 6)
+
+
+def _end_in_words(leg: PathLeg, end: PathLeg) -> str:
+    track = "" if end.axis.track == leg.axis.track else f"track {end.axis.track} km "
+    return f"{track}{_ends(end)[1]:g}"
+
+
+def draw_joints(panels: Sequence[Axes], course: Course) -> None:
+    """Draw upright lines where the kilometres of the route jump, as from a main line to a branch."""
+    for axes in panels:
+        for joint in course.joints_m:
+            style: Any = {"color": PURPLE, "linewidth": 1.0, "linestyle": (0, (6, 2, 1, 2)), "zorder": 0.6}
+            axes.axvline(course.at(joint), label="change to other kilometres", **style)
 
 
 def stations_along(path: RoutePath, line: Line) -> list[tuple[float, str]]:
@@ -80,16 +121,20 @@ def route_in_words(path: RoutePath, end_m: float, line: Line) -> str:
     return " – ".join(ends)
 
 
-def devices_along(path: RoutePath, supply: Supply) -> list[tuple[float, str, bool]]:
-    """Return distance [m] and name of the substations and section cabins that a route passes, and whether it is a substation."""
-    tracks = list(dict.fromkeys(leg.axis.track for leg in path.legs))
+def devices_along(path: RoutePath, site: Site) -> list[tuple[float, str, bool]]:
+    """Return distance [m] and name of the substations and section cabins that a route passes, and whether it is a substation.
+
+    One that feeds several lines on the route stands wherever it meets one of them.
+    """
     found = []
-    devices: tuple[Substation | SectionCabin, ...] = (*supply.substations, *supply.section_cabins)
-    for device in devices:
-        places = (path.distance(track, device.km) for track in tracks if device.tracks is None or track in device.tracks)
-        place = next((place for place in places if place is not None), None)
-        if place is not None:
-            found.append((place, device.id, isinstance(device, Substation)))
+    for device in site.stations:
+        places: list[float] = []
+        for track in dict.fromkeys(leg.axis.track for leg in path.legs):
+            if track in site.fed[device.id]:
+                place = path.distance(track, site.axes[track].km(site.fed[device.id][track][1]))
+                if place is not None and all(abs(place - other) > BESIDE_M for other in places):
+                    places.append(place)
+        found += [(place, device.id, isinstance(device, Substation)) for place in places]
     return sorted(found)
 
 

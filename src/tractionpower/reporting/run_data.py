@@ -11,6 +11,7 @@ import pandas as pd
 
 from tractionpower.model.scenario import Scenario
 from tractionpower.movement.compile import PlannedRun, plan_runs
+from tractionpower.reporting.places import LinePlaces
 from tractionpower.results.results import Results
 
 SAME_S = 1e-6
@@ -62,6 +63,11 @@ class RunData:
         """Return the value of a key figure, or None."""
         found = self.key_figures.get((name, place))
         return None if found is None or found["value"] is None else float(found["value"])
+
+    @cached_property
+    def places(self) -> LinePlaces:
+        """What stands along each of the lines."""
+        return LinePlaces(self.scenario)
 
     @cached_property
     def planned(self) -> dict[str, PlannedRun]:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from tractionpower.alignment.routes import stop_distance
-from tractionpower.model.supply import SectionCabin, Substation
+from tractionpower.reporting.places import told
 from tractionpower.reporting.run_data import RunData
-from tractionpower.reporting.train_graph import MOST_NAMES, GraphPlaces, TrainLine, broken_where_it_jumps, train_graph
+from tractionpower.reporting.train_graph import MOST_NAMES, GraphPanel, GraphPlaces, TrainLine, split_by_line, train_graph
 
 POINTS = 4000
 """Points of a line that runs over the whole width of a figure."""
@@ -26,19 +29,29 @@ def run_graphs(data: RunData) -> dict[str, Figure]:
     trains = data.table("trains")
     if trains is None:
         return {}
-    lines = [_line(data, name, rows) for name, rows in data.rows_of("trains", "train")]
-    planned, places = planned_times(data), places_of(data)
-    begin, end = float(trains["time_s"].min()), max(float(line.time_s[-1]) for line in lines)
-    shown = [thinned(line, (end - begin) / POINTS) for line in lines]
-    inside = [point for point in planned if begin <= point[0] <= end]
-    graphs = {"train_graph": train_graph(shown, inside, places, f"{data.title}: train graph")}
-    if len(lines) > MOST_NAMES and end - begin > FINE_S:
+    numbers = {track: number for number, tracks in enumerate(data.places.lines) for track in tracks}
+    ran = {name: rows for name, rows in data.rows_of("trains", "train") if name in data.planned}
+    parts = [part for name, rows in ran.items() for part in _lines(data, name, rows, numbers)]
+    if not parts:
+        return {}
+    begin, end = float(trains["time_s"].min()), max(float(line.time_s[-1]) for _, line in parts)
+    graphs = {"train_graph": _graph(data, parts, begin, end, "train graph")}
+    if len(ran) > MOST_NAMES and end - begin > FINE_S:
         first, last = busiest(trains["time_s"])
-        parts = [part for line in lines if (part := line.between(first, last)) is not None]
-        inside = [point for point in planned if first <= point[0] <= last]
-        title = f"{data.title}: train graph of the two hours with most trains"
-        graphs["train_graph_fine"] = train_graph([thinned(part, FINE_S / POINTS) for part in parts], inside, places, title)
+        inside = [(number, part) for number, line in parts if (part := line.between(first, last)) is not None]
+        graphs["train_graph_fine"] = _graph(data, inside, first, last, "train graph of the two hours with most trains")
     return graphs
+
+
+def _graph(data: RunData, parts: Sequence[tuple[int, TrainLine]], begin: float, end: float, title: str) -> Figure:
+    """Draw what runs between two times [s], each part of a train's run in the panel of its line."""
+    panels = []
+    for number, tracks in enumerate(data.places.lines):
+        shown = [thinned(line, (end - begin) / POINTS) for at, line in parts if at == number]
+        if shown:
+            inside = [point for point in planned_times(data, tracks) if begin <= point[0] <= end]
+            panels.append(GraphPanel(told(tracks), shown, inside, places_of(data, tracks)))
+    return train_graph(panels, f"{data.title}: {title}")
 
 
 def busiest(time_s: pd.Series) -> tuple[float, float]:
@@ -57,40 +70,37 @@ def thinned(line: TrainLine, interval_s: float) -> TrainLine:
     kept = np.append(True, np.diff(steps) > 0)
     kept |= ~np.isfinite(line.km)
     kept[-1] = True
-    return TrainLine(line.name, line.time_s[kept], line.km[kept], line.arrives)
+    return replace(line, time_s=line.time_s[kept], km=line.km[kept])
 
 
-def planned_times(data: RunData) -> list[tuple[float, float]]:
-    """Return planned times [s] and places [km] of all calls of the trains that ran."""
+def planned_times(data: RunData, tracks: Sequence[str] | None = None) -> list[tuple[float, float]]:
+    """Return planned times [s] and places [km] of all calls of the trains that ran; `tracks` leaves out other tracks."""
     ran = {name for name, _ in data.rows_of("trains", "train")}
-    return [
-        (float(when), planned.path.place(placed.at_m)[1])
-        for name, planned in data.planned.items()
-        if name in ran
-        for placed in planned.calls
-        for when in (placed.call.arrival, placed.call.departure)
-        if when is not None
-    ]
+    found = []
+    for name, planned in data.planned.items():
+        for placed in planned.calls if name in ran else ():
+            track, km = planned.path.place(placed.at_m)
+            times = (placed.call.arrival, placed.call.departure) if tracks is None or track in tracks else ()
+            found += [(float(when), km) for when in times if when is not None]
+    return found
 
 
-def places_of(data: RunData) -> GraphPlaces:
-    """Return the stations that a train passes, and the devices of the supply on tracks of trains."""
-    line, supply, runs = data.scenario.line, data.scenario.supply, list(data.planned.values())
+def places_of(data: RunData, tracks: Sequence[str] | None = None) -> GraphPlaces:
+    """Return the stations that a train passes, and the devices of the supply on tracks of trains, all or some of `tracks`."""
+    runs = list(data.planned.values())
     stops = {placed.call.station for planned in runs for placed in planned.calls if placed.call.stops}
     paths = list({id(planned.path): planned.path for planned in runs}.values())
-    passed = [s for s in line.stations if any(stop_distance(path, s) is not None for path in paths)]
+    passed = [s for s in data.scenario.line.stations if any(stop_distance(path, s, tracks=tracks) is not None for path in paths)]
     stations = sorted((s.km, s.name or s.id, s.id in stops) for s in passed)
     used = {leg.axis.track for path in paths for leg in path.legs}
-    devices: tuple[Substation | SectionCabin, ...] = (*supply.substations, *supply.section_cabins)
-    near = [each for each in devices if each.tracks is None or used.intersection(each.tracks)]
-    return GraphPlaces(stations, sorted((each.km, each.id, isinstance(each, Substation)) for each in near))
+    return GraphPlaces(stations, data.places.devices(used if tracks is None else used.intersection(tracks)))
 
 
-def _line(data: RunData, name: str, rows: pd.DataFrame) -> TrainLine:
-    time_s, place, km = (rows[column].to_numpy(float) for column in ("time_s", "distance_m", "position_km"))
-    track = rows["track"].cat.codes.to_numpy() if hasattr(rows["track"], "cat") else pd.factorize(rows["track"])[0]
-    way, planned = data.ways.get(name, {}), data.planned.get(name)
-    km = broken_where_it_jumps(km, place, track)
-    if planned is not None and way.get("status") == "left" and way["finished_s"] > time_s[-1]:
-        time_s, km = np.append(time_s, way["finished_s"]), np.append(km, planned.path.place(planned.route_m)[1])
-    return TrainLine(name, time_s, km, way.get("status") != "stuck")
+def _lines(data: RunData, name: str, rows: pd.DataFrame, numbers: Mapping[str, int]) -> list[tuple[int, TrainLine]]:
+    """Return the parts of a train's run with the numbers of their lines."""
+    way, planned = data.ways.get(name, {}), data.planned[name]
+    time_s, place = (rows[column].to_numpy(float) for column in ("time_s", "distance_m"))
+    if way.get("status") == "left" and way["finished_s"] > time_s[-1]:
+        time_s, place = np.append(time_s, way["finished_s"]), np.append(place, planned.route_m)
+    whole = TrainLine(name, time_s, place, way.get("status") != "stuck")
+    return split_by_line(whole, planned.path, place, numbers)

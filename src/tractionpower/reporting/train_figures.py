@@ -21,13 +21,14 @@ from numpy.typing import NDArray
 from tractionpower.kernels.train_tables import PHASES
 from tractionpower.model.base import format_time
 from tractionpower.movement.compile import PlannedRun, ceiling_of
-from tractionpower.reporting.axes import clock_label, draw_limits, mark_devices, set_clock, voltage_range
+from tractionpower.reporting.axes import DEAD_V, clock_label, draw_limits, mark_devices, set_clock, voltage_range
 from tractionpower.reporting.route_axis import (
     Course,
     course_of,
     devices_along,
     draw_current_limit,
     draw_height,
+    draw_joints,
     draw_permitted_speed,
     last_twice,
     name_stations,
@@ -143,15 +144,20 @@ def train_figure(ride: Ride, data: RunData) -> Figure:
 def title_of(ride: Ride, data: RunData) -> str:
     """Return the title of a train's figure, with its lowest voltage and its highest current below."""
     way = route_in_words(ride.planned.path, ride.planned.route_m, data.scenario.line)
+    jumps = bool(course_of(ride.planned.path).joints_m)  # then a kilometre alone would be no place
     text = f"{data.title}: train {ride.name}, {way}"
-    facts = []
+    facts, dead = [], ride.rows["voltage_v"] < DEAD_V
     for column, pick, words, unit in (
         ("voltage_v", "idxmin", "lowest voltage", "V"),
         ("current_a", "idxmax", "highest current", "A"),
     ):
-        if ride.rows[column].notna().any():
-            row = ride.rows.loc[getattr(ride.rows[column], pick)()]
-            facts.append(f"{words} {row[column]:.0f} {unit} at km {row['position_km']:.1f}, {format_time(row['time_s'])}")
+        known = ride.rows[column][~dead]
+        if known.notna().any():
+            row = ride.rows.loc[getattr(known, pick)()]
+            place = f"on track {row['track']} at km" if jumps else "at km"
+            facts.append(f"{words} {row[column]:.0f} {unit} {place} {row['position_km']:.1f}, {format_time(row['time_s'])}")
+    if dead.any():
+        facts.append(f"line dead for {float(np.diff(ride.time_s)[dead.to_numpy()].sum()):.0f} s")
     return "\n".join([text, "; ".join(facts)])
 
 
@@ -167,12 +173,12 @@ def _draw_rows(panels: Array, rows: pd.DataFrame, edges: Array) -> None:
         values = last_twice(rows[column].to_numpy())
         kept = peaks_kept(values, POINTS)
         axes.plot(edges[kept], values[kept], drawstyle="steps-post", color=colour, linewidth=1.2, label=label)
-    limited = (rows["limited_by"] == "voltage").to_numpy()
-    for first, last in spells(limited):
-        for axes in panels[2:]:
-            axes.axvspan(
-                edges[first], edges[last], color=ORANGE, alpha=0.25, lw=0, zorder=0.4, label="effort limited by the voltage"
-            )
+    dead = (rows["voltage_v"] < DEAD_V).to_numpy()
+    limited = (rows["limited_by"] == "voltage").to_numpy() & ~dead
+    for flags, colour, label in ((limited, ORANGE, "effort limited by the voltage"), (dead, INK, "line dead, no voltage")):
+        for first, last in spells(flags):
+            for axes in panels[2:]:
+                axes.axvspan(edges[first], edges[last], color=colour, alpha=0.25, lw=0, zorder=0.4, label=label)
 
 
 def spells(flags: Array) -> list[tuple[int, int]]:
@@ -220,7 +226,8 @@ def _draw_axes(over_way: Array, over_time: Array, ride: Ride, data: RunData, cou
     over_time[3].set_xlabel(clock_label(over_time[3]))
     stops = [placed.at_m for placed in ride.planned.calls if placed.call.stops]
     name_stations(over_way[:2].tolist(), course, stations_along(path, scenario.line), stops, PANEL)
-    devices = [(float(course.at(place)), name, kind) for place, name, kind in devices_along(path, scenario.supply)]
+    devices = [(float(course.at(place)), name, kind) for place, name, kind in devices_along(path, data.places.site)]
+    draw_joints(over_way.tolist(), course)
     for axes in over_way[2:]:
         axes.grid(visible=False, axis="x")
         mark_devices(axes, devices, PANEL, names=axes is over_way[2])

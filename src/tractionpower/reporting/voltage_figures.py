@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from typing import Any
 
 import matplotlib as mpl
@@ -10,12 +12,23 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tractionpower.model.supply import SectionCabin, Substation
-from tractionpower.reporting.axes import draw_limits, limits_between, mark_devices, voltage_range
+from tractionpower.reporting.axes import (
+    DEAD_V,
+    draw_limits,
+    limits_between,
+    mark_devices,
+    panels_of_lines,
+    voltage_range,
+    with_margin,
+)
+from tractionpower.reporting.places import told
 from tractionpower.reporting.run_data import RunData
 from tractionpower.reporting.style import BLUE, COLOURS, DASHES, GREEN, GREY, INK, ORANGE, STYLE, VERMILION, new_figure
 
 WIDTH = 10.5
+VOLTAGE = "voltage between contact line and rail [V]"
+
+_PLACE = re.compile(r"track (.+), km (-?[\d.]+)")
 
 MOST_TRACKS = 8
 """With more tracks, those with the lowest voltages are shown."""
@@ -42,48 +55,54 @@ def voltage_along_line(data: RunData) -> Figure | None:
         return None
     if "where" in profile and (profile["where"] == "pantograph").any():
         return _with_trains(data, profile)
+    lines = data.places.by_line(profile["track"].astype(str).unique())
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 4.8)
-        axes = figure.add_subplot()
-        for number, (track, rows) in enumerate(profile.groupby("track", observed=True)):
-            colour, dashes = COLOURS[number % len(COLOURS)], DASHES[number % len(DASHES)]
-            _draw_fixed(axes, rows, f"track {track}, ", colour, dashes)
-        _finish(axes, data, profile)
-        _mark_worst(axes, data, profile)
-        axes.set(xlabel="kilometre of the line [km]", ylabel="voltage between contact line and rail [V]")
-        axes.set_title(f"{data.title}: voltage along the line", loc="left", pad=26)
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4)
+        figure = new_figure(WIDTH, 4.8 if len(lines) == 1 else 1.6 + 3.2 * len(lines))
+        panels = list(figure.subplots(len(lines), sharey=True, squeeze=False)[:, 0])
+        number = 0
+        for axes, tracks in zip(panels, lines, strict=True):
+            for track in tracks:
+                colour, dashes = COLOURS[number % len(COLOURS)], DASHES[number % len(DASHES)]
+                _draw_fixed(axes, profile[profile["track"] == track], f"track {track}, ", colour, dashes)
+                number += 1
+            _finish(axes, data, profile, tracks)
+            axes.set_ylabel(VOLTAGE if len(lines) == 1 else f"{told(tracks)}\nvoltage [V]")
+            axes.set_xlabel("kilometre of the line [km]")
+        _mark_worst(panels, lines, data, profile)
+        if len(lines) == 1:
+            panels[0].set_title(f"{data.title}: voltage along the line", loc="left", pad=26)
+            panels[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4)
+        else:
+            figure.suptitle(f"{data.title}: voltage along the line", x=0.01, ha="left", fontsize=11)
+            figure.legend(loc="outside lower center", ncols=4, fontsize=8)
         return figure
 
 
 def _with_trains(data: RunData, profile: pd.DataFrame) -> Figure:
     lowest = profile.groupby("track", observed=True)["lowest_voltage_v"].min().sort_values(kind="stable")
-    tracks = sorted(str(track) for track in lowest.index[:MOST_TRACKS])
+    lines = data.places.by_line(str(track) for track in lowest.index[:MOST_TRACKS])
+    tracks = [track for line in lines for track in line]
     profile = profile[profile["track"].isin(tracks)]
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 1.8 + 2.5 * len(tracks))
-        panels = figure.subplots(len(tracks), sharex=True, sharey=True, squeeze=False)[:, 0]
+        figure = new_figure(WIDTH, 1.3 + 0.5 * len(lines) + 2.5 * len(tracks))
+        panels = panels_of_lines(figure, lines)
         for axes, track in zip(panels, tracks, strict=True):
             own = profile[profile["track"] == track]
             _draw_fixed(axes, own[own["where"] != "pantograph"], "fixed cross-sections, ", BLUE, "-")
-            _draw_pantographs(axes, own[own["where"] == "pantograph"])
+            _draw_pantographs(axes, own[own["where"] == "pantograph"], data.places.ends(track))
             axes.set_ylabel(f"track {track}\nvoltage [V]")
-        panels[0].set_xlim(*_ends(profile["km"]))
-        for axes, track in zip(panels, tracks, strict=True):
-            _finish(axes, data, profile, track=track, names=axes is panels[0])
-        _mark_worst(panels[tracks.index(str(lowest.index[0]))], data, profile)
-        panels[-1].set_xlabel("kilometre of the line [km]")
+        for line in lines:
+            for track in line:
+                axes = panels[tracks.index(track)]
+                _finish(axes, data, profile, [track], line=line, names=track == line[0])
+            panels[tracks.index(line[-1])].set_xlabel("kilometre of the line [km]")
+        _mark_worst(panels, [[track] for track in tracks], data, profile)
         figure.suptitle(f"{data.title}: voltage along the line", x=0.01, ha="left", fontsize=11)
         found: dict[str, Any] = {}
         for axes in panels:
             found |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
         figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=3, fontsize=8)
         return figure
-
-
-def _ends(km: pd.Series) -> tuple[float, float]:
-    margin = 0.01 * max(float(km.max() - km.min()), 0.1)
-    return float(km.min()) - margin, float(km.max()) + margin
 
 
 def _draw_fixed(axes: Axes, rows: pd.DataFrame, label: str, colour: str, dashes: Any) -> None:
@@ -95,39 +114,40 @@ def _draw_fixed(axes: Axes, rows: pd.DataFrame, label: str, colour: str, dashes:
         axes.fill_between(rows["km"], low, high, color=colour, alpha=0.18, label=f"{label}lowest to highest", lw=0)
 
 
-def _draw_pantographs(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw voltages at pantographs of trains in bins; where no train was the lines are broken."""
+def _draw_pantographs(axes: Axes, rows: pd.DataFrame, ends: tuple[float, float]) -> None:
+    """Draw voltages at pantographs of trains in bins, the last of which may reach beyond the `ends` of the track [km].
+
+    Where no train was the lines are broken.
+    """
     if rows.empty:
         return
     rows = rows.sort_values("km", kind="stable")
     gaps = np.flatnonzero(np.diff(rows["km"]) > 1.5 * BIN_KM)
-    km = np.insert(rows["km"].to_numpy(), gaps + 1, np.nan)
+    km = np.insert(np.clip(rows["km"].to_numpy(float), *ends), gaps + 1, np.nan)
     for which, dashes, width in (("highest", (0, (1, 1.5)), 1.0), ("mean", (0, (4, 2)), 1.0), ("lowest", "-", 1.4)):
         volts = np.insert(rows[f"{which}_voltage_v"].to_numpy(float), gaps + 1, np.nan)
         style: Any = {"color": VERMILION, "linestyle": dashes, "linewidth": width}
         axes.plot(km, volts, label=f"pantographs, {which}", **style)
 
 
-def _finish(axes: Axes, data: RunData, profile: pd.DataFrame, *, track: str | None = None, names: bool = True) -> None:
-    """Draw limits, devices and loads; `track` leaves out those of other tracks."""
-    supply = data.scenario.supply
+def _finish(
+    axes: Axes, data: RunData, profile: pd.DataFrame, tracks: Sequence[str], *, line: Sequence[str] = (), names: bool = True
+) -> None:
+    """Draw limits, and devices and loads of some tracks; the axis is that of all tracks of a line."""
     axes.set_ylim(*voltage_range(float(profile["lowest_voltage_v"].min()), float(profile["highest_voltage_v"].max())))
-    axes.set_xlim(*_ends(profile["km"]))
+    axes.set_xlim(*with_margin(*data.places.span(profile, line or tracks)))
     draw_limits(axes, data.scenario)
-    devices: tuple[Substation | SectionCabin, ...] = (*supply.substations, *supply.section_cabins)
-    near = [each for each in devices if track is None or each.tracks is None or track in each.tracks]
-    mark_devices(axes, sorted((each.km, each.id, isinstance(each, Substation)) for each in near), WIDTH - 1.0, names=names)
-    loads = sorted({load.km for load in supply.loads if track in (None, load.track)})
+    mark_devices(axes, data.places.devices(tracks), WIDTH - 1.0, names=names)
+    loads = sorted({load.km for load in data.scenario.supply.loads if load.track in tracks})
     if loads:
         bottom = axes.get_ylim()[0]
         axes.plot(loads, [bottom] * len(loads), "|", color=INK, markersize=10, clip_on=False, label="loads")
 
 
-def _mark_worst(axes: Axes, data: RunData, profile: pd.DataFrame) -> None:
-    """Mark the lowest voltage, with what the key figures say of its place and time."""
-    worst = int(profile["lowest_voltage_v"].argmin())
-    volts, km = (float(profile[column].iloc[worst]) for column in ("lowest_voltage_v", "km"))
-    told = next(
+def _mark_worst(panels: Sequence[Axes], shown: Sequence[Sequence[str]], data: RunData, profile: pd.DataFrame) -> None:
+    """Mark the lowest voltage in the panel of its track, with what the key figures say of its place and time."""
+    volts = float(profile["lowest_voltage_v"].min())
+    told_of = next(
         (
             ", ".join(text for text in (figure["place"], figure["time"]) if text)
             for (name, _), figure in data.key_figures.items()
@@ -135,12 +155,23 @@ def _mark_worst(axes: Axes, data: RunData, profile: pd.DataFrame) -> None:
         ),
         "",
     )
-    text = ", ".join(part for part in (f"lowest {volts:.0f} V", "" if "km" in told else f"km {km:g}", told) if part)
+    # Of places that are equally low it is the one that the key figures tell.
+    low = profile[profile["lowest_voltage_v"] < volts + SAME_V]
+    place = _PLACE.search(told_of)
+    if place is not None and (low["track"] == place[1]).any():
+        low = low[low["track"] == place[1]]
+        worst = low.iloc[int((low["km"] - float(place[2])).abs().argmin())]
+    else:
+        worst = profile.iloc[int(profile["lowest_voltage_v"].argmin())]
+    km = float(worst["km"])
+    axes = next(axes for axes, tracks in zip(panels, shown, strict=True) if str(worst["track"]) in tracks)
+    text = ", ".join(part for part in (f"lowest {volts:.0f} V", "" if "km" in told_of else f"km {km:g}", told_of) if part)
     left = km < sum(axes.get_xlim()) / 2
     axes.plot(km, volts, "v", color=INK, markersize=6, zorder=4)
     axes.annotate(
         text, (km, volts), (6 if left else -6, -9), textcoords="offset points", ha="left" if left else "right",
-        va="top", fontsize=8, color=INK, zorder=5, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85},
+        va="top", fontsize=8, color=INK, zorder=5,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85},
     )  # fmt: skip
 
 
@@ -150,6 +181,9 @@ def voltage_histogram(data: RunData) -> Figure | None:
     if trains is None:
         return None
     rows = trains[(trains["time_s"] >= data.counts_from_s) & trains["voltage_v"].notna()]
+    dead = rows["voltage_v"] < DEAD_V  # neither low nor high
+    without = f" ({100.0 * dead.mean():.2g} % of the time, without voltage, left out)" if dead.any() else ""
+    rows = rows[~dead]
     if rows.empty:
         return None
     volts, taking = rows["voltage_v"].to_numpy(float), (rows["current_a"] >= 0.0).to_numpy()
@@ -170,7 +204,7 @@ def voltage_histogram(data: RunData) -> Figure | None:
         axes.set_ylim(0.0, 1.18 * below.max())
         _draw_lines(axes, data, volts)
         axes.set(xlabel="voltage at the pantograph [V]", ylabel=f"share of the time of all trains [%], classes of {width:g} V")
-        axes.set_title(f"{data.title}: voltages at pantographs", loc="left")
+        axes.set_title(f"{data.title}: voltages at pantographs{without}", loc="left")
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3)
         return figure
 

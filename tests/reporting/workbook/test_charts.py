@@ -1,3 +1,6 @@
+from itertools import pairwise
+
+from fake_branch import branch_run
 from openpyxl.utils import range_boundaries
 
 
@@ -54,3 +57,27 @@ def test_the_clock_of_an_axis_holds_all_points(small):
         assert axis.number_format.formatCode == "[hh]:mm"
         assert axis.scaling.min <= 0.25
         assert (axis.scaling.max - axis.scaling.min) / axis.majorUnit <= 13
+
+
+def title_of(chart):
+    return "".join(run.t for run in chart.title.tx.rich.p[0].r)
+
+
+def test_main_line_and_branch_have_charts_of_their_own(write):
+    run = branch_run()
+    book = write(run.results, run.scenario)
+    charts = {title_of(chart): chart for chart in book["Charts"]._charts}
+    both = [f"{what}, {tracks}" for what in ("Train graph", "Voltage along the line") for tracks in ("tracks 1, 2", "track 3")]
+    assert list(charts)[:4] == both
+    assert sorted(series.tx.v for series in charts["Train graph, track 3"].series) == ["R 101", "R 102", "T 23"]
+    rising = {series.tx.v: series.graphicalProperties.line.dashStyle for series in charts["Train graph, track 3"].series}
+    assert rising == {"R 101": "dash", "R 102": "solid", "T 23": "dash"}
+    for name in ("Train graph, tracks 1, 2", "Train graph, track 3"):
+        for series in charts[name].series:
+            places, _ = column_of(book, series.yVal.numRef.f)
+            steps = [abs(b - a) for a, b in pairwise(places)]
+            assert max(steps) < 1.0  # no line across the junction
+    profile = charts["Voltage along the line, track 3"]
+    assert {series.tx.v for series in profile.series} >= {"track 3, lowest", "track 3, mean"}
+    assert not any(series.tx.v.startswith(("track 1", "track 2")) for series in profile.series)
+    assert (profile.x_axis.scaling.min, profile.x_axis.scaling.max) == (0.0, 15.0)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from tractionpower.reporting.labels import CLOCK_STEPS_S
+from tractionpower.reporting.places import told
 from tractionpower.reporting.workbook.extracts import (
     KM,
     LIMITS,
@@ -16,6 +17,7 @@ from tractionpower.reporting.workbook.extracts import (
     TIME,
     Drawn,
     Stretch,
+    km_span,
     limit_heading,
     period_in_words,
     power_heading,
@@ -35,19 +37,9 @@ VOLTAGE_TICK = 200.0
 def draw_all(page: Page, drawn: Drawn) -> None:
     """Fill the sheet of charts from the extracts; it says what is shown and what is left out."""
     if "trains" in drawn.blocks:
-        shown = drawn.stretches["trains"]
-        page.section("Train graph")
-        page.note(f"{len(shown)} of {drawn.trains} trains: rising kilometres blue, falling dark and dashed.")
-        page.chart(_train_graph(drawn, shown))
+        _train_graphs(page, drawn)
     if "profile" in drawn.blocks:
-        stretches = _of_interest(drawn.stretches["profile"])
-        _next_page(page)
-        page.section("Voltage along the line")
-        where = "the pantographs of trains" if stretches[0].where == PANTOGRAPH else "cross-sections"
-        left_out = len({stretch.name for stretch in drawn.stretches["profile"]} - {stretch.name for stretch in stretches})
-        more = f"; {left_out} more tracks are on sheet Voltage profile" if left_out else ""
-        page.note(f"Lowest and mean voltage of the run at {where}, with limits{more}.")
-        page.chart(_profile(drawn, stretches))
+        _profiles(page, drawn)
     if "loads" in drawn.blocks:
         _next_page(page)
         page.section("Load curves of the substations")
@@ -64,13 +56,37 @@ def _next_page(page: Page) -> None:
         page.new_page()
 
 
-def _train_graph(drawn: Drawn, stretches: Sequence[Stretch]) -> Any:
-    chart = scatter("Train graph", TIME, KM, legend=False)
-    for train in stretches:
-        colour, dashes = (COLOURS[0], "solid") if train.rising else (COLOURS[-1], "dash")
-        draw(chart, drawn.blocks["trains"], Line(train.name, TIME, KM, train.first, train.last, colour, dashes))
-    _show_clock(chart, *drawn.spans["trains"])
-    return chart
+def _by_line(drawn: Drawn, stretches: Sequence[Stretch]) -> list[tuple[str, list[Stretch]]]:
+    """Return the stretches of each line with what stands behind the title of its chart; alone, it has nothing there."""
+    numbers = sorted({stretch.line for stretch in stretches})
+    words = {number: f", {told(drawn.lines[number])}" if len(numbers) > 1 and number >= 0 else "" for number in numbers}
+    return [(words[number], [each for each in stretches if each.line == number]) for number in numbers]
+
+
+def _train_graphs(page: Page, drawn: Drawn) -> None:
+    for words, stretches in _by_line(drawn, drawn.stretches["trains"]):
+        _next_page(page)
+        page.section(f"Train graph{words}")
+        shown = len({stretch.name for stretch in stretches})
+        page.note(f"{shown} of {drawn.trains} trains: rising kilometres blue, falling dark and dashed.")
+        chart = scatter(f"Train graph{words}", TIME, KM, legend=False)
+        for train in stretches:
+            colour, dashes = (COLOURS[0], "solid") if train.rising else (COLOURS[-1], "dash")
+            draw(chart, drawn.blocks["trains"], Line(train.name, TIME, KM, train.first, train.last, colour, dashes))
+        _show_clock(chart, *drawn.spans["trains"])
+        page.chart(chart)
+
+
+def _profiles(page: Page, drawn: Drawn) -> None:
+    for words, every in _by_line(drawn, drawn.stretches["profile"]):
+        stretches = _of_interest(every)
+        _next_page(page)
+        page.section(f"Voltage along the line{words}")
+        where = "the pantographs of trains" if stretches[0].where == PANTOGRAPH else "cross-sections"
+        left_out = len({stretch.name for stretch in every} - {stretch.name for stretch in stretches})
+        more = f"; {left_out} more tracks are on sheet Voltage profile" if left_out else ""
+        page.note(f"Lowest and mean voltage of the run at {where}, with limits{more}.")
+        page.chart(_profile(drawn, stretches, f"Voltage along the line{words}"))
 
 
 def _of_interest(stretches: Sequence[Stretch]) -> list[Stretch]:
@@ -79,8 +95,8 @@ def _of_interest(stretches: Sequence[Stretch]) -> list[Stretch]:
     return (at_trains or list(stretches))[:MOST_TRACKS]
 
 
-def _profile(drawn: Drawn, stretches: Sequence[Stretch]) -> Any:
-    chart, block = scatter("Voltage along the line", KM, "voltage [V]"), drawn.blocks["profile"]
+def _profile(drawn: Drawn, stretches: Sequence[Stretch], title: str) -> Any:
+    chart, block = scatter(title, KM, "voltage [V]"), drawn.blocks["profile"]
     for stretch, colour in zip(stretches, COLOURS, strict=False):
         for heading, dashes in ((LOWEST, "solid"), (MEAN, "sysDash")):
             name = f"track {stretch.name}, {heading.split()[0]}"
@@ -92,7 +108,9 @@ def _profile(drawn: Drawn, stretches: Sequence[Stretch]) -> Any:
     low, high = drawn.spans["voltage"]
     chart.y_axis.scaling.min = _down(low - 1.0, VOLTAGE_TICK)  # a limit is no border of the chart
     chart.y_axis.scaling.max = -_down(-high - 1.0, VOLTAGE_TICK)
-    chart.x_axis.scaling.min, chart.x_axis.scaling.max = _down(drawn.spans["km"][0], 1.0), -_down(-drawn.spans["km"][1], 1.0)
+    if km_span(stretches[0].line) in drawn.spans:
+        first, last = drawn.spans[km_span(stretches[0].line)]
+        chart.x_axis.scaling.min, chart.x_axis.scaling.max = _down(first, 1.0), -_down(-last, 1.0)
     return chart
 
 

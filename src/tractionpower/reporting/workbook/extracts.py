@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from tractionpower.reporting.places import LinePlaces
 from tractionpower.reporting.workbook.facts import limit_in_words
 from tractionpower.reporting.workbook.page import Block, Book, Column, Page, heading_of
 
@@ -33,18 +34,19 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Consecutive rows of a sheet that belong together: a train, or a track."""
+    """Consecutive rows of a sheet that belong together: a train on a line, or a track; `line` is the number of the line."""
 
     name: str
     first: int
     last: int
     rising: bool = True
     where: str = ""
+    line: int = 0
 
 
 @dataclass
 class Drawn:
-    """What there is to draw: the blocks by kind, their stretches, and from where to where the axes go."""
+    """What there is to draw: the blocks by kind, their stretches, the tracks of each line, from where to where the axes go."""
 
     blocks: dict[str, Block] = field(default_factory=dict)
     stretches: dict[str, list[Stretch]] = field(default_factory=dict)
@@ -52,11 +54,12 @@ class Drawn:
     spans: dict[str, tuple[float, float]] = field(default_factory=dict)
     period_s: int = 0
     substations: tuple[str, ...] = ()
+    lines: tuple[tuple[str, ...], ...] = ()
 
 
 def add(book: Book) -> Drawn:
     """Add the sheets of extracts and return where they stand."""
-    drawn = Drawn()
+    drawn = Drawn(lines=book.facts.lines.lines)
     _trains(book, drawn)
     _profile(book, drawn)
     _loads(book, drawn)
@@ -94,11 +97,16 @@ def _trains(book: Book, drawn: Drawn) -> None:
     drawn.blocks["trains"], drawn.trains = block, len(runs)
     drawn.stretches["trains"] = []
     drawn.spans["trains"] = min(float(times[rows[0]]) for rows in picked), max(float(times[rows[-1]]) for rows in picked)
-    first = block.first
+    number = {track: k for k, tracks in enumerate(drawn.lines) for track in tracks}
+    first, km, tracks = block.first, frame["position_km"].to_numpy(float), frame["track"].astype(str).to_numpy()
     for rows in picked:
-        km = frame["position_km"].to_numpy()[rows]
         name = str(frame["train"].iat[rows[0]])
-        drawn.stretches["trains"].append(Stretch(name, first, first + len(rows) - 1, bool(km[-1] >= km[0])))
+        line = np.array([number.get(track, -1) for track in tracks[rows]])
+        # A train that changes the line is a line in the chart of each.
+        cuts = [0, *(np.flatnonzero(np.diff(line)) + 1).tolist(), len(rows)]
+        for a, b in itertools.pairwise(cuts):
+            rising = bool(km[rows[b - 1]] >= km[rows[a]])
+            drawn.stretches["trains"].append(Stretch(name, first + a, first + b - 1, rising, line=int(line[a])))
         first += len(rows)
 
 
@@ -129,18 +137,26 @@ def _profile(book: Book, drawn: Drawn) -> None:
     rows = ([str(row[0]).replace("_", " "), *row[1:], *limits.values()] for row in frame[fields].itertuples(index=False))
     block = page.table(columns, rows, frozen=True)
     drawn.blocks["profile"] = block
-    drawn.spans["km"] = float(frame["km"].min()), float(frame["km"].max())
+    for number, tracks in enumerate(drawn.lines):
+        if frame["track"].isin(tracks).any():
+            drawn.spans[km_span(number)] = book.facts.lines.span(frame, tracks)
     voltages = [*limits.values(), float(frame["lowest_voltage_v"].min()), float(frame["mean_voltage_v"].max())]
     drawn.spans["voltage"] = min(voltages), max(voltages)
-    drawn.stretches["profile"] = _stretches(frame, block)
+    drawn.stretches["profile"] = _stretches(frame, block, book.facts.lines)
 
 
-def _stretches(frame: pd.DataFrame, block: Block) -> list[Stretch]:
+def km_span(line: int) -> str:
+    """Return the name of the span of kilometres of a line."""
+    return f"km of line {line}"
+
+
+def _stretches(frame: pd.DataFrame, block: Block, lines: LinePlaces) -> list[Stretch]:
     keys = list(zip(frame["where"], frame["track"], strict=True))
     starts = [k for k in range(len(keys)) if k == 0 or keys[k] != keys[k - 1]]
     ends = [*starts[1:], len(keys)]
     return [
-        Stretch(keys[a][1], block.first + a, block.first + b - 1, where=keys[a][0]) for a, b in zip(starts, ends, strict=True)
+        Stretch(keys[a][1], block.first + a, block.first + b - 1, where=keys[a][0], line=lines.number_of(keys[a][1]))
+        for a, b in zip(starts, ends, strict=True)
     ]
 
 

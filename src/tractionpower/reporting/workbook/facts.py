@@ -10,6 +10,7 @@ import pandas as pd
 from tractionpower.model.limits import Limit, find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.timetable import TrainRun
+from tractionpower.reporting.places import LinePlaces
 from tractionpower.results.results import Results
 
 KNOWN_AS = {
@@ -95,6 +96,11 @@ class Facts:
     def limit(self, name: str) -> Limit | None:
         """Return a limit of the study's system."""
         return find_limit(self.scenario.limits, self.scenario.supply.system, name)
+
+    @cached_property
+    def lines(self) -> LinePlaces:
+        """The lines with kilometres of their own."""
+        return LinePlaces(self.scenario)
 
     @cached_property
     def runs(self) -> dict[str, TrainRun]:

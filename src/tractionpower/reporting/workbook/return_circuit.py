@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 
 from tractionpower.model.base import parse_time
+from tractionpower.reporting.places import told
 from tractionpower.reporting.workbook.facts import KNOWN_AS, Facts
 from tractionpower.reporting.workbook.limits import OPEN, colour_verdicts, verdict_word
 from tractionpower.reporting.workbook.page import Block, Book, Column, Page, heading_of
@@ -213,13 +214,16 @@ def _profile(book: Book, front: Page) -> None:
     columns = [Column(TRACK), Column(PLACE, "0.000"), *(Column(heading_of(name), style) for name, style in _PROFILE.items())]
     frame = frame.assign(track=frame["track"].astype(str)).sort_values(["track", "km"], kind="stable", ignore_index=True)
     block = page.table(columns, frame[["track", "km", *_PROFILE]].itertuples(index=False), frozen=True)
-    front.new_page()
-    front.chart(_chart(frame, block))
+    lines = book.facts.lines.by_line(frame["track"].unique())
+    for tracks in lines:
+        front.new_page()
+        words = f", {told(tracks)}" if len(lines) > 1 else ""
+        front.chart(_chart(frame[frame["track"].isin(tracks)], block, f"Rail potential along the line{words}"))
 
 
-def _chart(frame: pd.DataFrame, block: Block) -> Any:
-    """Return a chart of highest, mean and lowest potential of the conductors with the highest ones."""
-    chart = scatter("Rail potential along the line", PLACE, "rail potential [V]")
+def _chart(frame: pd.DataFrame, block: Block, title: str) -> Any:
+    """Return a chart of highest, mean and lowest potential of the conductors with the highest ones, all of one line."""
+    chart = scatter(title, PLACE, "rail potential [V]")
     peak = frame[list(_POTENTIALS)].abs().max(axis=1).groupby(frame["track"]).max().sort_values(ascending=False)
     for track, colour in zip(peak.index[:MOST_DRAWN], COLOURS, strict=False):
         rows = frame.index[frame["track"] == track]
