@@ -103,6 +103,7 @@ EVENTS = {
         "",
     ),
     "voltage_lost": ("a train comes onto a dead line, or the line goes dead", "", ""),
+    "stopped_without_voltage": ("a train comes to a stand on a dead line", "time without [s]", ""),
     "voltage_back": ("its line has voltage again", "time without [s]", ""),
     "regrouped": ("series motors change their grouping", "motors in series after", "before"),
     "substation_blocked": ("spell in which the rectifiers block", "highest voltage of the busbar [V]", "no-load voltage"),
@@ -138,6 +139,8 @@ RUN_JSON = {
     "lumping": "error that lumping the rails into the contact line would make, at the step with the lowest voltage of a train: "
     "`train`, `time`, `voltage_v`, `lumped_voltage_v`, `largest_difference_v` at any train or load; empty without trains",
     "notes": "what a reader has to know: constant voltage, trains that are stuck",
+    "links": "feeders, return feeders and switches: each with `place` as in the key figures, `kind` (feeder, cabin, return, "
+    "switch), `track`, `km`, `normal_state`, and `trip_current_a` or null",
     "files": "size and SHA-256 of every file",
 }
 RUN_JSON_OF_RAILS = {
@@ -154,7 +157,7 @@ FILES_OF_A_RUN = """## Other files
 | `key_figures.json` | The figures that sum the run up, below. |
 | `scenario.json` | What was computed, resolved: all inputs in one file. Its SHA-256 is the `input_hash` of the run. |
 | `figures/` | PNG: train graph, voltages along the line, loads of substations, rail potentials; in `trains/` single trains. |
-| `report.xlsx` | Verdicts, limits, trains, calls, substations, return circuit, energy, charts, events, inputs, definitions. |
+| `report.xlsx` | Verdicts, limits, trains, calls, substations, feeders, rails, energy, charts, events, inputs, definitions. |
 | `.running/` | Complete parts of the tables while a run lasts. `tractionpower report DIR --partial` reads them after a crash. |
 
 Figures and workbook are made from the tables: `tractionpower report DIR` writes them again without a simulation. A file that
@@ -178,15 +181,16 @@ Each has `name`, `value`, `unit`, `place`, `time`, `limit` with `limit_value`, `
 beyond a limit when it is so by more than 0.1 V. Limits are rows of `src/tractionpower/data/limits.csv`, overlaid by `limits:` of
 the study; a verdict whose limit the system has no row for is left out. Rows of system `dc` hold for all DC systems that have
 none of their own. Those of `touch_` and `stray_` are judged where the rails have a potential (docs/model.md, Rail potential);
-`limit_value` of a touch voltage is how long a spell above it may last.
+`limit_value` of a touch voltage is how long a spell above it may last, `voltage_v` the voltage.
 
 | verdict | unit | limit | status of the limit that ships for dc3000 |
 |---|---|---|---|"""
 FIGURES = """## key_figures.json
 
 A list of `name`, `value`, `unit`, `place`, `time` (HH:MM:SS), `definition`, `status`. The place is `train ID`, `substation ID`,
-`load ID`, `zone A–B` (between two neighbouring substations), `earthing ID` or `voltage-limiting device ID`; figures of the
-whole run have none, or that of the extreme value.
+`load ID`, `feeder AT TRACK SIDE` (of a substation or section cabin; side return: return feeder), `switch ID`, `zone A–B`
+(between two neighbouring substations), `earthing ID` or `voltage-limiting device ID`; figures of the whole run have none, or
+that of the extreme value.
 W in a name is a window: WINDOWS.
 Windows longer than the run are left out, as are figures without a value, such as the delay of a train without planned times.
 Steps before the end of `clock.warm_up` count in lengths, times, delays, energies of auxiliaries and losses, and the energies of
@@ -321,7 +325,7 @@ def _figures(figures: list[dict[str, Any]]) -> Iterator[str]:
     """Yield a table for each kind of place, windows taken together."""
     count = Counter(figure["name"] for figure in figures)
     labels = "|".join(window_label(window) for window in WINDOWS_S)
-    rows: dict[str, dict[str, str]] = {"": {}, "substation": {}, "load": {}, "train": {}, "zone": {}}
+    rows: dict[str, dict[str, str]] = {"": {}, "substation": {}, "feeder": {}, "load": {}, "train": {}, "zone": {}}
     for figure in figures:
         kind = figure["place"].split(" ")[0]
         if kind not in ("load", "zone") and count[figure["name"]] == 1:
@@ -332,7 +336,8 @@ def _figures(figures: list[dict[str, Any]]) -> Iterator[str]:
             meaning = re.sub(r"over \d+ \w+", "over W", meaning)
         rows[kind][name] = f"| `{name}` | {figure['unit']} | {meaning.replace('|', chr(92) + '|')} |"
     for kind, own in rows.items():
-        yield "\n".join([f"| {kind or 'whole run'} | unit | definition |", "|---|---|---|", *own.values(), ""])
+        title = {"": "whole run", "feeder": "feeder, switch (without `trips`)"}.get(kind, kind)
+        yield "\n".join([f"| {title} | unit | definition |", "|---|---|---|", *own.values(), ""])
 
 
 def _table(model: type[BaseModel]) -> str:

@@ -236,3 +236,36 @@ def test_a_ring_of_kilometres():
     assert (problem.code, problem.path) == ("chainage_break", "line.chainage_breaks[0].continues_as_km")
     assert "cannot jump to km 3: it would run in a ring, past km 5 where the piece before begins" in problem.found
     assert "from km 5" in problem.allowed
+
+
+# --- what is allowed and doubtful
+
+
+def test_current_limits_that_overlap_are_doubtful(line):
+    rows = (TrainCurrentLimit(from_km=0.0, to_km=10.0, max_current_a=2000.0),
+            TrainCurrentLimit(from_km=8.0, to_km=12.0, max_current_a=1500.0, tracks=("2",)))  # fmt: skip
+    words = ("rows 0 and 1 both hold on track 2 from km 8 to km 10", "the lower limit holds")
+    assert_only(line(train_current_limits=rows), "overlap", "line.train_current_limits[1]", *words, severity="warning")
+    apart = (rows[0], rows[1].model_copy(update={"from_km": 10.0}))
+    assert check_line(line(train_current_limits=apart)) == []
+
+
+def test_more_current_at_standstill_than_in_motion_is_doubtful(line):
+    row = TrainCurrentLimit(from_km=0.0, to_km=10.0, max_current_a=200.0, standstill_current_a=300.0)
+    path = "line.train_current_limits[0].standstill_current_a"
+    words = ("300 A at standstill, above 200 A", "up to max_current_a, 200 A")
+    assert_only(line(train_current_limits=(row,)), "standstill_current", path, *words, severity="warning")
+    assert check_line(line(train_current_limits=(row.model_copy(update={"standstill_current_a": 200.0}),))) == []
+
+
+def test_stretches_without_power_of_two_kinds_that_overlap_are_doubtful(line):
+    rows = (PowerOff(from_km=3.0, to_km=5.0, kind="coast"), PowerOff(from_km=4.0, to_km=6.0, kind="neutral"))
+    words = ("rows 0 (coast) and 1 (neutral) both hold on tracks 1, 2 from km 4 to km 5", "what takes more away holds")
+    assert_only(line(power_off=rows), "overlap", "line.power_off[1]", *words, severity="warning")
+    assert check_line(line(power_off=(rows[0], rows[1].model_copy(update={"kind": "coast"})))) == []
+
+
+def test_kilometres_that_exist_twice_are_doubtful(line):
+    path, words = "line.chainage_breaks[0].continues_as_km", ("km 14 to km 15 exist twice on tracks 1, 2", "first occurrence")
+    breaks = (ChainageBreak(at_km=15.0, continues_as_km=14.0),)
+    assert_only(line(chainage_breaks=breaks), "doubled_km", path, *words, severity="warning")

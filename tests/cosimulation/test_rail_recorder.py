@@ -8,6 +8,8 @@ import pytest
 from fake_rails import RAIL_OHM_PER_KM, leaky_v, make_recorder, rail_places, rows_of, train_rows
 from small_studies import make_scenario, run_in_memory
 
+from tractionpower.cli.run_summary import sentence
+from tractionpower.cosimulation.events import EventLog, message
 from tractionpower.cosimulation.rail_recorder import MOST_PLACES, RailRecorder
 from tractionpower.cosimulation.run import Run
 from tractionpower.kernels.block import advance
@@ -145,6 +147,15 @@ def test_spells_at_places_and_under_trains_are_judged():
     assert (permanent["value"], permanent["limit_value"], permanent["met"]) == (310.0, 300.0, False)
     assert (permanent["place"], permanent["status"]) == ("track 1, km 0.00", "secondary")
     assert permanent["name"] == "longest spell of the rail potential above 120 V"
+    told = "longest spell of the rail potential above 120 V"
+    log = EventLog.__new__(EventLog)
+    log.rows, log.start_s = [], 0.0
+    log.add_violations([permanent])
+    assert message(log.rows[0]) == f"{told}: 310.0 s at track 1, km 0.00, may last 300 s (touch_permanent: 120 V)"
+    assert sentence(permanent) == (
+        f"{told} 310.0 s at track 1, km 0.00, at 00:00:00: VIOLATED"
+        " (may last 300 s, touch_permanent: 120 V, source status: secondary)"
+    )
     recorder.add_trains(*train_rows(time_s, np.zeros(400, int), np.full(400, -130.0), time_s / 400.0))
     permanent = {each["limit"]: each for each in recorder.verdicts()}["touch_permanent"]
     assert (permanent["value"], permanent["place"]) == (400.0, "train X, from track 1, km 0.00")

@@ -91,6 +91,38 @@ def test_cross_sections_of_the_profile_count_every_step(busy):
         np.testing.assert_allclose(at_a[column], value, rtol=1e-6)
 
 
+def test_the_profile_counts_steps_with_a_voltage():
+    """Half of the line is dead from the sixth step on, a piece of it always."""
+    points = [{"id": f"X{km:g}", "track": "1", "km": km, "state": state} for km, state in ((8.0, "open"), (6.0, "closed"))]
+    scenario = make_scenario(
+        load("x", 12.0), load("y", 3.0, power_kw=500.0), tracks=("1",), section_points=points,
+        switch_events=[{"time": "00:00:06", "device": "A", "state": "rectifiers_out"}],
+    )  # fmt: skip
+    results, _, _ = run_in_memory(scenario)
+    profile = results.table("profile").set_index("km")
+    assert profile["count"].to_dict() == {0.0: 6, 3.0: 6, 6.0: 6, 8.0: 10, 12.0: 10, 20.0: 10}
+    loads = results.table("loads").query("load == 'y'")["voltage_v"]
+    assert loads.iloc[6:].tolist() == [0.0] * 4
+    assert profile.loc[3.0, "mean_voltage_v"] == pytest.approx(loads.iloc[:6].mean(), rel=1e-6)
+    assert profile.loc[3.0, "lowest_voltage_v"] == pytest.approx(loads.iloc[:6].min(), rel=1e-6)
+    before = run_in_memory(scenario.model_copy(update={"clock": scenario.clock.model_copy(update={"end": 6.0})}))[0]
+    volts = [run.table("profile").set_index("km").loc[8.0, "mean_voltage_v"] for run in (before, results)]
+    other = run_in_memory(make_scenario(load("x", 12.0), tracks=("1",), section_points=points[:1]))[0]
+    far = other.table("profile").set_index("km").loc[12.0, "mean_voltage_v"]  # beyond the cut it is that of the load
+    assert far == pytest.approx(profile.loc[12.0, "mean_voltage_v"], rel=1e-6)
+    near = 2.0 * volts[0] - far
+    assert volts[1] == pytest.approx((6 * near + 10 * far) / 16, rel=1e-5)  # both sides, each with its steps
+
+
+def test_places_that_never_have_a_voltage_have_no_row():
+    points = [{"id": f"X{km:g}", "track": "1", "km": km, "state": "open"} for km in (6.0, 8.0)]
+    results, _, _ = run_in_memory(make_scenario(load("x", 3.0), load("z", 7.0), tracks=("1",), section_points=points))
+    profile = results.table("profile")
+    assert profile["km"].tolist() == [0.0, 3.0, 6.0, 8.0, 20.0]
+    assert set(profile["count"]) == {10}
+    assert np.isfinite(profile["lowest_voltage_v"]).all()
+
+
 # --- verdicts
 
 

@@ -80,6 +80,7 @@ def test_a_train_coasts_through_a_dead_stretch():
     assert (inside["tractive_force_kn"] == 0.0).all()
     assert outside["voltage_v"].min() > 2500.0
     (low,) = results.table("events").query("kind == 'voltage_lost'").to_dict("records")
+    assert "stopped_without_voltage" not in set(results.table("events")["kind"])
     assert low["position_km"] == pytest.approx(14.0, abs=0.05)
     assert results.run["trains"][0]["status"] == "left"
     assert close(results)
@@ -339,6 +340,11 @@ def test_a_train_loses_its_voltage_and_gets_it_back(kind):
     (lost,) = told.query("kind == 'voltage_lost'").to_dict("records")
     (back,) = told.query("kind == 'voltage_back'").to_dict("records")
     assert (lost["time_s"], back["time_s"], back["value"]) == (200.0, 400.0, 200.0)
+    (stopped,) = told.query("kind == 'stopped_without_voltage'").to_dict("records")
+    first = stands.iloc[0]
+    assert (stopped["time_s"], stopped["value"]) == (first["time_s"], first["time_s"] - 200.0)
+    assert stopped["position_km"] == pytest.approx(first["position_km"])
+    assert f"stand on track 1, km {first['position_km']:.2f}" in stopped["message"]
     assert (lost["track"], lost["position_km"]) == ("1", pytest.approx(dark["position_km"].iloc[0]))
     assert told.query("kind == 'stop'")["message"].tolist() == ["stops at Q", "stops at B"]  # the forced stand is no call
     assert close(results)
@@ -350,6 +356,7 @@ def test_a_run_with_lost_voltage_and_stretches_without_power_may_be_cut_anywhere
     scenario = couple(*MIXED, power_off=power_off, switch_events=out(150.3, 240.0), coast_without_voltage_s=33.3, end_s=500.0)
     whole, _, _ = run_in_memory(scenario)
     assert whole.table("events")["kind"].isin(["voltage_lost"]).sum() >= 4
+    assert whole.table("events")["kind"].isin(["stopped_without_voltage"]).any()
     monkeypatch.setattr(run_module, "BUFFER_BYTES", 1)
     monkeypatch.setattr(run_module, "FIRST_BLOCK", 1)
     pieces, _, _ = run_in_memory(scenario)

@@ -44,6 +44,23 @@ def test_the_lowest_voltage_is_marked_on_its_track_with_train_and_time(data):
     assert f"train {worst['train']}, track {worst['track']}, km {worst['position_km']:.1f}" in text
 
 
+def test_of_equal_voltages_the_one_that_the_text_names_is_marked(data):
+    """The lowest voltage is the same at two places of two tracks; the key figure names the later one."""
+    profile = data.table("profile").copy()
+    fixed = profile["where"] != "pantograph"
+    lowest = profile["lowest_voltage_v"].min() - 100.0
+    profile.loc[fixed & profile["km"].isin([10.0, 20.0]), "lowest_voltage_v"] = lowest
+    told = figure("lowest_voltage_v", lowest, "track 2, km 20", 60.0)
+    twice = RunData(Results(data.results.run, [told], data.results._source), data.scenario)
+    twice._read["profile"] = profile
+    panels = voltage_along_line(twice).axes
+    marks = [[(line.get_xdata()[0], line.get_ydata()[0]) for line in axes.lines if line.get_marker() == "v"] for axes in panels]
+    assert marks[0] == []
+    assert marks[1] == [(20.0, pytest.approx(lowest))]
+    (text,) = [text.get_text() for text in panels[1].texts if text.get_text().startswith("lowest")]
+    assert "track 2, km 20, 00:01:00" in text
+
+
 def test_lines_are_broken_where_no_train_was(data):
     profile = data.table("profile")
     data._read["profile"] = profile[~((profile["where"] == "pantograph") & (profile["km"].between(3.0, 4.0)))]

@@ -41,3 +41,8 @@ def test_substations_that_feed_block_or_are_not_in_the_network():
 def test_a_column_that_is_missing_is_a_defect():
     with pytest.raises(KeyError):
         make_table("loads", {"time_s": [0.0]})
+
+
+def test_no_zero_is_negative():
+    rows = feeders_table(np.array([0.0]), [("A", "1", "low_km"), ("A", "2", "low_km")], np.array([[-0.0, -1e-60]]))
+    assert [str(value) for value in rows["current_a"].to_pylist()] == ["0.0", "0.0"]

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Literal, get_args
 
-from tractionpower.alignment.axis import TrackAxis, compile_axes, follow_breaks, tracks_at
+from tractionpower.alignment.axis import TrackAxis, breaks_of, compile_axes, follow_breaks, tracks_at
 from tractionpower.alignment.intervals import Patch, Row, find_gaps, find_overlaps, group, name_km, name_tracks, place_rows
 from tractionpower.errors import Problem
 from tractionpower.kernels.tables import SHARED_NODE_M
@@ -23,12 +23,15 @@ def check_line(line: Line) -> list[Problem]:
     problems = check_ids("line.tracks", [track.id for track in line.tracks], by_index=True)
     problems += check_ids("line.stations", [station.id for station in line.stations])
     problems += _check_breaks(line, axes)
+    problems += _check_doubled(line)
     for station in line.stations:
         problems += _check_station(station, axes)
     for name in ("gradients", "curves", "tunnels", "speed_limits", "train_current_limits", "power_off"):
         problems += check_rows(f"line.{name}", getattr(line, name), axes)
     for name in ("gradients", "curves", "tunnels"):
         problems += check_overlaps(f"line.{name}", getattr(line, name), axes)
+    problems += _check_current_limits(line, axes)
+    problems += _check_power_off(line, axes)
     problems += _check_curve_radii(line)
     problems += _check_gradient_gaps(line, axes)
     problems += _check_speed_gaps(line.speed_limits, axes)
@@ -156,6 +159,24 @@ def _check_breaks(line: Line, axes: Axes) -> list[Problem]:
     return problems
 
 
+def _check_doubled(line: Line) -> list[Problem]:
+    """Return a warning for each break that jumps back, so that kilometres exist twice."""
+    concerned: dict[int, list[str]] = {}
+    for track in sorted(line.tracks, key=lambda track: track.id):
+        faulty = {index for index, *_ in follow_breaks(track, line.chainage_breaks)[1]}
+        for index, item in breaks_of(track, line.chainage_breaks):
+            if item.continues_as_km < item.at_km and index not in faulty:
+                concerned.setdefault(index, []).append(track.id)
+    problems = []
+    for index, names in sorted(concerned.items()):
+        low, high = line.chainage_breaks[index].continues_as_km, line.chainage_breaks[index].at_km
+        path = f"line.chainage_breaks[{index}].continues_as_km"
+        found = f"km {name_km(low)} to km {name_km(high)} exist twice on {name_tracks(list(dict.fromkeys(names)))}"
+        remedy = "a place there means the first occurrence; describe what stands on the second as a track of its own"
+        problems.append(Problem("doubled_km", path, found, "", remedy, "warning"))
+    return problems
+
+
 def _check_station(station: Station, axes: Axes) -> list[Problem]:
     path = f"line.stations[{station.id}]"
     problems = check_tracks(f"{path}.tracks", station.tracks, axes)
@@ -171,6 +192,45 @@ def _stop_track(key: str, axes: Axes) -> str:
     """Return the track that a key of `stop_km` names, such as ``1`` or ``1 increasing``."""
     track, _, direction = key.rpartition(" ")
     return track if key not in axes and direction in get_args(Direction) else key
+
+
+def _check_current_limits(line: Line, axes: Axes) -> list[Problem]:
+    """Return warnings: rows that overlap, and more current at standstill than in motion."""
+    path, rows = "line.train_current_limits", line.train_current_limits
+    problems = [
+        Problem(
+            "overlap",
+            f"{path}[{overlap.rows[1]}]",
+            f"rows {overlap.rows[0]} and {overlap.rows[1]} both hold on {overlap}",
+            remedy="the lower limit holds; let one end where the other begins",
+            severity="warning",
+        )
+        for overlap in find_overlaps(place_rows(enumerate(rows), axes), axes)
+    ]
+    for index, row in enumerate(rows):
+        if row.standstill_current_a is not None and row.standstill_current_a > row.max_current_a:
+            found = f"{row.standstill_current_a:g} A at standstill, above {row.max_current_a:g} A in motion"
+            allowed = f"up to max_current_a, {row.max_current_a:g} A"
+            where = f"{path}[{index}].standstill_current_a"
+            problems.append(Problem("standstill_current", where, found, allowed, "correct one of them", "warning"))
+    return problems
+
+
+def _check_power_off(line: Line, axes: Axes) -> list[Problem]:
+    """Return a warning where rows of different kinds overlap."""
+    rows = line.power_off
+    return [
+        Problem(
+            "overlap",
+            f"line.power_off[{later}]",
+            f"rows {first} ({rows[first].kind}) and {later} ({rows[later].kind}) both hold on {overlap}",
+            remedy="what takes more away holds; let one end where the other begins",
+            severity="warning",
+        )
+        for overlap in find_overlaps(place_rows(enumerate(rows), axes), axes)
+        for first, later in [overlap.rows]
+        if rows[first].kind != rows[later].kind
+    ]
 
 
 def _check_curve_radii(line: Line) -> list[Problem]:

@@ -44,7 +44,7 @@ def show(outcome: Outcome, prepared: Run) -> None:
     columns = {name: heading for name, heading in COLUMNS.items() if any((name, f"substation {one}") in figures for one in names)}
     table = new_table(["substation"], list(columns.values()))
     for one in names:
-        table.add_row(one, *(f"{figures[name, f'substation {one}']:.1f}" for name in columns))
+        table.add_row(one, *(f"{figures[name, f'substation {one}']:z.1f}" for name in columns))
     console.print(table)
     console.print()
     for verdict in outcome.run["verdicts"]:
@@ -62,8 +62,11 @@ def sentence(verdict: dict[str, Any]) -> str:
     unit = verdict["unit"]
     where = " ".join(f"at {word}," if word else "" for word in (verdict["place"], verdict["time"])).strip().rstrip(",")
     word = "met" if verdict["met"] else "VIOLATED"
-    limit = f"{verdict['limit']} {verdict['limit_value']:g} {unit}, source status: {verdict['status']}"
-    return f"{verdict['name']} {verdict['value']:.1f} {unit}{' ' if where else ''}{where}: {word} ({limit})"
+    limit = f"{verdict['limit']} {verdict['limit_value']:g} {unit}"
+    if "voltage_v" in verdict:  # a spell above a touch voltage
+        limit = f"may last {verdict['limit_value']:g} s, {verdict['limit']}: {verdict['voltage_v']:g} V"
+    limit += f", source status: {verdict['status']}"
+    return f"{verdict['name']} {verdict['value']:z.1f} {unit}{' ' if where else ''}{where}: {word} ({limit})"
 
 
 def _trains(outcome: Outcome) -> Iterator[str]:

@@ -98,6 +98,7 @@ class EventLog:
                         "time_s": time_s, "end_s": time_s, "kind": "limit_violated", "subject": verdict["name"], "track": "",
                         "position_km": np.nan, "value": verdict["value"], "limit": verdict["limit_value"],
                         "place": verdict["place"], "unit": verdict["unit"], "limit_name": verdict["limit"],
+                        "voltage_v": verdict.get("voltage_v"),
                     }
                 )  # fmt: skip
 
@@ -133,7 +134,10 @@ def _not_servable(row: dict[str, Any]) -> str:
 
 def _limit_violated(row: dict[str, Any]) -> str:
     at = f" at {row['place']}" if row["place"] else ""
-    return f"{row['subject']}: {row['value']:.1f} {row['unit']}{at}, {row['limit_name']} is {row['limit']:g} {row['unit']}"
+    found = f"{row['subject']}: {row['value']:z.1f} {row['unit']}{at}"
+    if row["voltage_v"] is not None:  # a spell above a touch voltage
+        return f"{found}, may last {row['limit']:g} s ({row['limit_name']}: {row['voltage_v']:g} V)"
+    return f"{found}, {row['limit_name']} is {row['limit']:g} {row['unit']}"
 
 
 def _switched(row: dict[str, Any]) -> str:
@@ -165,15 +169,19 @@ _TOLD: dict[str, Callable[[dict[str, Any]], str]] = {
         f"{_spell(row)}: a node balances within {row['value']:.3g} A only; the best solution found is given"
     ),
     "substation_blocked": lambda row: (
-        f"{_spell(row)}: rectifiers block, the busbar is at up to {row['value']:.1f} V, above {row['limit']:g} V without load"
+        f"{_spell(row)}: rectifiers block, the busbar is at up to {row['value']:z.1f} V, above {row['limit']:g} V without load"
     ),
-    "low_voltage": lambda row: f"{_spell(row)}: down to {row['value']:.1f} V, below {row['limit']:g} V",
-    "high_voltage": lambda row: f"{_spell(row)}: up to {row['value']:.1f} V, above {row['limit']:g} V",
+    "low_voltage": lambda row: f"{_spell(row)}: down to {row['value']:z.1f} V, below {row['limit']:g} V",
+    "high_voltage": lambda row: f"{_spell(row)}: up to {row['value']:z.1f} V, above {row['limit']:g} V",
     "current_limited": lambda row: (
         f"{_spell(row)}: {_what_is_cut(row['reasons'])} limited by {' and '.join(sorted(row['reasons'])).replace('_', ' ')},"
-        f" down to {row['value']:.1f} V"
+        f" down to {row['value']:z.1f} V"
     ),
     "voltage_lost": lambda row: "the contact line is dead: neither traction nor auxiliaries",
+    "stopped_without_voltage": lambda row: (
+        f"comes to a stand on track {row['track']}, km {row['position_km']:.2f}: the contact line is dead,"
+        f" {row['value']:g} s after the voltage was lost"
+    ),
     "voltage_back": lambda row: f"the contact line has voltage again, after {row['value']:g} s",
     "regrouped": lambda row: f"{row['limit']:g} motors in series become {row['value']:g}",
     "train_entered": lambda row: "comes onto the line",
@@ -183,7 +191,7 @@ _TOLD: dict[str, Callable[[dict[str, Any]], str]] = {
     "limit_violated": _limit_violated,
     "switched": _switched,
     "tripped": _tripped,
-    "vld_closed": lambda row: f"closes: the rail potential is {row['value']:.1f} V, above {row['limit']:g} V",
+    "vld_closed": lambda row: f"closes: the rail potential is {row['value']:z.1f} V, above {row['limit']:g} V",
     "line_dead": lambda row: f"nothing feeds the contact line from km {row['position_km']:g} to km {row['to_km']:g}",
     "line_live": lambda row: (
         f"the contact line is fed again from km {row['position_km']:g} to km {row['to_km']:g}, after {row['value']:g} s"

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.cosimulation.events import EventLog
+from tractionpower.cosimulation.link_recorder import LinkRecorder
 from tractionpower.cosimulation.lumping import WorstStep
 from tractionpower.cosimulation.places import Placed
 from tractionpower.cosimulation.rail_recorder import RailRecorder
@@ -28,7 +29,7 @@ from tractionpower.results.key_figures import (
     window_figures,
 )
 from tractionpower.results.ledgers import ElectricLedger
-from tractionpower.results.tables import feeders_table, loads_table, make_table, substations_table, switches_table
+from tractionpower.results.tables import loads_table, make_table, substations_table
 from tractionpower.results.trains import calls_table, trains_table
 from tractionpower.supply.characteristics import dissipative_resistance, no_load_voltage
 from tractionpower.supply.compile import SupplyTables
@@ -52,10 +53,7 @@ class Recorder:
         self.substation_a = Extremes(len(supply.substations))
         self.substation_w = Extremes(len(supply.substations))
         self.load_v, self.load_w = Extremes(len(supply.loads)), Extremes(len(supply.loads))
-        kinds = [link.kind for link in supply.links]
-        self.feeders = [k for k, kind in enumerate(kinds) if kind in ("feeder", "return")]
-        self.cabins = [k for k, kind in enumerate(kinds) if kind == "cabin"]
-        self.switches = [k for k, kind in enumerate(kinds) if kind == "switch"]
+        self.links = LinkRecorder(scenario, supply)
         self.section_v = Extremes(len(supply.sections))
         self.voltages = VoltageVerdicts(scenario, supply, self.trains, self.section_v, self.load_v)
         self.windows = SubstationWindows.of(len(supply.substations), clock.step_s)
@@ -101,8 +99,8 @@ class Recorder:
         power = np.nan_to_num(rows.source_v) * rows.source_a
         self.substation_w.add(t, power)
         self.windows.add(t, rows.source_a, power)
-        fed = self.supply.network.ports["start_v"][self.supply.load_port] > 0.0
-        self.load_v.add(t, np.where(fed, rows.load_v, np.nan))
+        self.links.add(t, rows.link_a, self.supply.links)
+        self.load_v.add(t, np.where(self._fed, rows.load_v, np.nan))
         self.load_w.add(t, rows.load_v * rows.load_a)
         self.section_v.add(t, rows.section_v)
         self.rails.add(t, rows)
@@ -122,20 +120,17 @@ class Recorder:
                 "substations",
                 substations_table(time_s, names, self._no_load_v(), self._dissipative_ohm(), rows.source_v, rows.source_a),
             )
-        if "feeders" in self.wanted and self.feeders:
-            feeders = [(link.station, link.track, link.side) for link in (supply.links[k] for k in self.feeders)]
-            append("feeders", feeders_table(time_s, feeders, rows.link_a[:, self.feeders]))
-        if "cabins" in self.wanted and self.cabins:
-            links = [supply.links[k] for k in self.cabins]
-            places = [(link.station, link.track, link.side) for link in links]
-            append("cabins", feeders_table(time_s, places, rows.link_a[:, self.cabins], "cabins"))
-        if "switches" in self.wanted and self.switches:
-            links = [supply.links[k] for k in self.switches]
-            append("switches", switches_table(time_s, [(link.id, link.closed) for link in links], rows.link_a[:, self.switches]))
+        self.links.write(self.wanted, time_s, rows.link_a, supply.links, append)
         if "loads" in self.wanted and supply.loads:
-            append("loads", loads_table(time_s, [load.id for load in supply.loads], rows.load_v, rows.load_a))
+            load_v = np.where(self._fed, rows.load_v, 0.0)  # what nothing feeds is left with a rounding of the solver
+            append("loads", loads_table(time_s, [load.id for load in supply.loads], load_v, rows.load_a))
         if "earthing" in self.wanted:
             self.rails.write_devices(time_s, rows, append)
+
+    @property
+    def _fed(self) -> NDArray[np.bool_]:
+        """Which loads stand on a contact line that something feeds in the present states."""
+        return np.asarray(self.supply.network.ports["start_v"][self.supply.load_port] > 0.0)
 
     def _no_load_v(self) -> Array:
         """Return E of the substations that feed in the present states [V], NaN for others."""
@@ -155,6 +150,7 @@ class Recorder:
     def close(self, switched: Sequence[dict[str, Any]] = ()) -> None:
         """Write the tables that are known at the end only; `switched` are the events of what was switched."""
         calls = self.trains.note_calls()
+        self.links.add_trips(switched, self.figures_from_s)
         if "calls" in self.wanted and calls:
             self.writer.append("calls", calls_table(calls))
         if "profile" in self.wanted:
@@ -168,24 +164,28 @@ class Recorder:
             self.writer.append("events", self.events.table())
 
     def _profile(self) -> dict[str, Any]:
-        """Voltages at the cross-sections; where a contact line is cut there, both sides count as one place."""
+        """Voltages at the cross-sections; where a contact line is cut there, both sides count as one place.
+
+        Steps without a voltage do not count, and a place that never has one has no row.
+        """
         places = [(km, track) for track, km in self.supply.sections]
         places += [(load.km, load.track) for load in self.supply.loads]
-        low = np.concatenate([self.section_v.lowest, self.load_v.lowest])
-        mean = np.concatenate([self.section_v.mean, self.load_v.mean])
-        high = np.concatenate([self.section_v.highest, self.load_v.highest])
+        low, high, total, counts = (
+            np.concatenate([getattr(self.section_v, name), getattr(self.load_v, name)])
+            for name in ("lowest", "highest", "total", "counts")
+        )
         groups: dict[tuple[float, str], list[int]] = {}
-        for number, place in enumerate(places):
-            groups.setdefault(place, []).append(number)
+        for number in np.flatnonzero(counts).tolist():
+            groups.setdefault(places[number], []).append(number)
         order = sorted(groups, key=lambda place: (place[1], place[0]))
         tracks, found = self.trains.places.tracks, self.trains.profile()
         fixed: dict[str, Any] = {
             "km": [km for km, _ in order],
             "track": [tracks.index(track) for _, track in order],
             "lowest_voltage_v": [low[groups[place]].min() for place in order],
-            "mean_voltage_v": [mean[groups[place]].mean() for place in order],
+            "mean_voltage_v": [total[groups[place]].sum() / counts[groups[place]].sum() for place in order],
             "highest_voltage_v": [high[groups[place]].max() for place in order],
-            "count": [self.section_v.count] * len(order),
+            "count": [counts[groups[place]].max() for place in order],
         }
         columns: dict[str, Any] = {name: np.concatenate((values, found[name])) for name, values in fixed.items()}
         where = np.repeat([0, 1], [len(order), len(found["km"])])
@@ -212,6 +212,7 @@ class Recorder:
             "trains": self.trains.status(self.now_s),
             "lumping": self.worst_step.compare(),
             "notes": list(self._notes()),
+            "links": self.links.summary(),
             **self.rails.summary(),
         }
 
@@ -246,6 +247,7 @@ class Recorder:
             *self.voltages.figures(),
             *substation_figures(substations, self.substation_a, self.substation_w, self.step_s),
             *window_figures(substations, self.windows),
+            *self.links.figures(),
             *load_figures([load.id for load in self.supply.loads], self.load_w, self.step_s),
             *self.trains.figures(self.now_s),
             *self.rails.figures(),

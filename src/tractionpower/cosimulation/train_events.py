@@ -1,4 +1,4 @@
-"""Events of trains: entered and left, stops and departures, voltage lost and back, spells of low voltage and cut effort."""
+"""Events of trains: entered and left, stops and departures, voltage lost, back, stands without it, spells beyond limits."""
 
 from __future__ import annotations
 
@@ -47,11 +47,12 @@ class TrainEvents:
         self._open: defaultdict[str, dict[int, Row]] = defaultdict(dict)
         self._grouping: dict[int, int] = {}
         self._lost_s: dict[int, float] = {}
+        self._moves: set[int] = set()
 
     def add(self, rows: Rows) -> None:
         """Look at rows of trains, ordered by time."""
         order = np.argsort(rows["train"], kind="stable")
-        names = ("train", "time_s", "s_m", "voltage_v", "limited_by", "traction_n", "wished_n", "grouping")
+        names = ("train", "time_s", "s_m", "voltage_v", "limited_by", "traction_n", "wished_n", "grouping", "v_mps")
         columns = {name: rows[name][order] for name in names}
         volts, low, high = columns["voltage_v"], self._voltages.u_min2, self._voltages.u_max2
         limited = np.isin(columns["limited_by"], LIMITS) & (columns["traction_n"] < columns["wished_n"]) & (volts != 0.0)
@@ -99,19 +100,24 @@ class TrainEvents:
         self._grouping.update(zip(train[ends].tolist(), grouping[ends].tolist(), strict=True))
 
     def _lose(self, columns: Columns) -> None:
-        """Note where trains lose their voltage and get it back; on a dead line it is 0 exactly."""
-        train, dead = columns["train"], columns["voltage_v"] == 0.0
+        """Note where trains lose their voltage, come to a stand without one, get it back; on a dead line it is 0 exactly."""
+        train, dead, moves = columns["train"], columns["voltage_v"] == 0.0, columns["v_mps"] > 0.0
         starts = np.flatnonzero(np.diff(train, prepend=-1) != 0)
-        before = np.roll(dead, 1)
+        before, moved = np.roll(dead, 1), np.roll(moves, 1)
         before[starts] = [k in self._lost_s for k in train[starts].tolist()]
-        for n in np.flatnonzero(dead != before).tolist():
+        moved[starts] = [k in self._moves for k in train[starts].tolist()]
+        stopped = dead & moved & ~moves
+        for n in np.flatnonzero((dead != before) | stopped).tolist():
             k, time_s, at_m = int(train[n]), float(columns["time_s"][n]), float(columns["s_m"][n])
-            if dead[n]:
+            if dead[n] and not before[n]:
                 self._lost_s[k] = time_s
-                event = self._note("voltage_lost", k, time_s, at_m, np.nan, np.nan)
-            else:
-                event = self._note("voltage_back", k, time_s, at_m, time_s - self._lost_s.pop(k), np.nan)
-            event["end_s"] = time_s
+                self._note("voltage_lost", k, time_s, at_m, np.nan, np.nan)["end_s"] = time_s
+            if stopped[n]:
+                self._note("stopped_without_voltage", k, time_s, at_m, time_s - self._lost_s[k], np.nan)["end_s"] = time_s
+            if before[n] and not dead[n]:
+                self._note("voltage_back", k, time_s, at_m, time_s - self._lost_s.pop(k), np.nan)["end_s"] = time_s
+        for n in np.flatnonzero(np.diff(train, append=-1) != 0).tolist():
+            (self._moves.add if moves[n] else self._moves.discard)(int(train[n]))
 
     def note(self, kind: str, k: int, time_s: float, s_m: float, subject: str = "") -> None:
         """Note an event of train `k` at a time [s] and place [m]; `subject` is the station of a call."""

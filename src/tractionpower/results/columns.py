@@ -105,10 +105,19 @@ TABLES: dict[str, tuple[Column, ...]] = {
         _column("km", "Place along the line.", "f8"),
         _column("track", "Track.", "text"),
         _column("lowest_voltage_v", "Lowest voltage between contact line and rail."),
-        _column("mean_voltage_v", "Mean voltage over the run."),
+        _column("mean_voltage_v", "Mean voltage over the steps in which there is one."),
         _column("highest_voltage_v", "Highest voltage."),
-        _column("count", "Number of steps, or of steps of trains.", "i4"),
-        _column("where", "cross_section: a fixed place, in every step; pantograph: trains within 0.25 km of it.", "text"),
+        _column(
+            "count",
+            "Number of steps with a voltage, or of steps of trains; where the contact line is cut, of the side that has more.",
+            "i4",
+        ),
+        _column(
+            "where",
+            "cross_section: a fixed place, in every step with a voltage, both sides of a cut together;"
+            " pantograph: trains within 0.25 km of it.",
+            "text",
+        ),
     ),
     "rails": (
         TIME,

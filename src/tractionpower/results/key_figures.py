@@ -49,7 +49,7 @@ class KeyFigure:
     def as_dict(self) -> dict[str, Any]:
         """Return the figure as it is written, with its unit."""
         figure = asdict(self)
-        return {"name": self.name, "value": self.value, "unit": unit_of(self.name)} | {
+        return {"name": self.name, "value": self.value + 0.0, "unit": unit_of(self.name)} | {  # -0.0 becomes 0.0
             key: figure[key] for key in ("place", "time", "definition", "status")
         }
 
@@ -120,6 +120,31 @@ def window_figures(names: Sequence[str], windows: SubstationWindows) -> Iterator
         if np.isfinite(demand.best[k]):
             when, definition = format_time(demand.best_from_s[k]), "highest mean over a quarter of an hour by the clock, U I"
             yield KeyFigure("highest_clock_15_min_power_kw", float(demand.best[k]) / 1000.0, place, when, definition)
+
+
+def link_figures(place: str, magnitude: Extremes, k: int, closed_steps: int, trips: int | None) -> Iterator[KeyFigure]:
+    """Yield the figures of feeder or switch `k` from the magnitudes of its current [A]; nothing without steps.
+
+    Parameters
+    ----------
+    place
+        Which it is.
+    magnitude, k
+        Sums and extremes of all of them, and its number.
+    closed_steps
+        Steps in which it is closed.
+    trips
+        How often its breaker has tripped; None where it has none.
+    """
+    if not magnitude.counts[k]:
+        return
+    when = format_time(magnitude.highest_s[k])
+    yield KeyFigure("highest_current_a", float(magnitude.highest[k]), place, when, "highest mean of a step, in either direction")
+    yield KeyFigure("rms_current_a", float(magnitude.rms[k]), place, "", "root of the mean square over the run")
+    share = 100.0 * closed_steps / magnitude.count
+    yield KeyFigure("time_closed_percent", share, place, "", "share of the steps in which it is closed")
+    if trips is not None:
+        yield KeyFigure("trips", float(trips), place, "", "how often its breaker trips")
 
 
 def load_figures(names: Sequence[str], power: Extremes, step_s: float) -> Iterator[KeyFigure]:

@@ -33,7 +33,7 @@ def schema_of(table: str) -> pa.Schema:
 
 
 def make_table(table: str, columns: dict[str, Any]) -> pa.Table:
-    """Return an Arrow table with the declared columns; NaN in a voltage or loss means that there is no value.
+    """Return an Arrow table with the declared columns; NaN in a voltage or loss means that there is no value, -0.0 is 0.0.
 
     Parameters
     ----------
@@ -49,8 +49,11 @@ def make_table(table: str, columns: dict[str, Any]) -> pa.Table:
         if pa.types.is_dictionary(field.type):
             codes, names = values
             arrays.append(pa.DictionaryArray.from_arrays(pa.array(codes, pa.int32()), pa.array(names, pa.string())))
+        elif pa.types.is_floating(field.type):
+            numbers = np.asarray(values, field.type.to_pandas_dtype()) + field.type.to_pandas_dtype()(0.0)  # no -0.0
+            arrays.append(pa.array(numbers, field.type, from_pandas=True))
         else:
-            arrays.append(pa.array(values, field.type, from_pandas=pa.types.is_floating(field.type)))
+            arrays.append(pa.array(values, field.type))
     return pa.Table.from_arrays(arrays, schema=schema)
 
 

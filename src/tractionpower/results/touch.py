@@ -187,7 +187,7 @@ def touch_verdicts(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
         {
             "name": f"longest spell of the rail potential above {row['voltage_v']:g} V", "value": row["longest_s"], "unit": "s",
             "place": row["place"], "time": row["time"], "limit": row["limit"], "limit_value": row["may_last_s"],
-            "source": row["source"], "status": row["status"], "met": row["met"],
+            "source": row["source"], "status": row["status"], "met": row["met"], "voltage_v": row["voltage_v"],
         }
         for row in rows
         if row["met"] is not None

@@ -86,3 +86,11 @@ def test_the_cover_says_how_long_a_spell_may_last(book):
 
 def test_a_run_without_earth_has_no_such_sheet(small):
     assert SHEET not in small.sheetnames
+
+
+def test_leakage_of_32_bits_shows_no_noise(book):
+    sheet = book["Rail potential"]
+    headings = [cell for row in sheet.iter_rows() for cell in row if str(cell.value).startswith("leakage")]
+    (head,) = [cell for cell in headings if "S/km" in cell.value]
+    cells = [sheet.cell(row, head.column) for row in range(head.row + 1, sheet.max_row + 1)]
+    assert {cell.number_format for cell in cells} == {"0.0000"}

@@ -16,6 +16,7 @@ from tractionpower.reporting.workbook import (
     energy,
     events,
     extracts,
+    feeders,
     figures,
     inputs,
     limits,
@@ -39,7 +40,7 @@ def build(results: Results, scenario: Scenario) -> Any:
     blank = workbook.active  # styles are made on it
     book = Book(workbook, Facts(results, scenario))
     front = book.page("Cover", shorten(book.facts.study, cover.TITLE_LENGTH))
-    for add in (limits.add, trains.add, calls.add, substations.add, return_circuit.add, energy.add, figures.add):
+    for add in (limits.add, trains.add, calls.add, substations.add, feeders.add, return_circuit.add, energy.add, figures.add):
         add(book)
     charted = book.page("Charts", "Charts")
     drawn = extracts.add(book)

@@ -31,7 +31,7 @@ _WHERE = (
 _KNOWN = (Column("status", widest=40), Column("source", widest=80))
 _RESISTANCES = (
     *_WHERE,
-    Column(heading_of("resistance_ohm_per_km"), "general"),
+    Column(heading_of("resistance_ohm_per_km"), "0.00000"),
     Column("found by", widest=44),
     Column("wear [%]", "0.0"),
     Column(heading_of("temperature_c"), "0.0"),
@@ -43,7 +43,7 @@ _SHARES = (
     Column("wire"),
     Column("count", "0"),
     Column("wear [%]", "0.0"),
-    Column("resistance of each [Ω/km]", "general"),
+    Column("resistance of each [Ω/km]", "0.00000"),
     Column("share of the current [%]", "0.0"),
 )
 _CABLES = (
@@ -51,7 +51,7 @@ _CABLES = (
     Column("cable"),
     Column("cables", "0"),
     Column(heading_of("length_m"), "general"),
-    Column(heading_of("resistance_ohm"), "general"),
+    Column(heading_of("resistance_ohm"), "0.00000"),
     *_KNOWN,
 )
 

@@ -218,4 +218,4 @@ def _limit_value(verdict: dict[str, Any], unit: str) -> str:
 
 
 def _number(value: float) -> str:
-    return f"{value:.1f}".removesuffix(".0") if abs(value) < 1e15 else f"{value:g}"
+    return f"{value:z.1f}".removesuffix(".0") if abs(value) < 1e15 else f"{value:g}"

@@ -39,7 +39,7 @@ CHART_ROWS = 30
 """Rows that a chart covers."""
 
 _BARE = {"km": "place [km]", "kmh": "speed [km/h]", "permille": "slope [‰]"}
-_FIXED = {"0": 0, "0.0": 1, "0.00": 2, "0.000": 3}
+_FIXED = {"0": 0, "0.0": 1, "0.00": 2, "0.000": 3, "0.0000": 4, "0.00000": 5}
 
 
 def heading_of(name: str) -> str:

@@ -25,7 +25,7 @@ _PROFILE = {
     "mean_leakage_a_per_km": "0.000",
     "mean_leaving_a_per_km": "0.000",
     "longest_above_limit_s": "0",
-    "leakage_s_per_km": "general",
+    "leakage_s_per_km": "0.0000",
     "length_km": "0.000",
 }
 _JUDGED = (

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from tractionpower.model.base import parse_time
+from tractionpower.model.base import format_time, parse_time
 from tractionpower.reporting.workbook.facts import Facts
 from tractionpower.reporting.workbook.page import Block, Book, Column, Page, heading_of
 from tractionpower.reporting.workbook.plots import bars
@@ -63,7 +63,10 @@ def windows_of(facts: Facts, pattern: re.Pattern[str]) -> list[tuple[str, str]]:
 
 
 def _main(facts: Facts) -> tuple[list[Column], list[list[Any]]]:
-    columns = [Column("substation", widest=24), Column("place [km]", "0.000"), Column("state")]
+    columns = [Column("substation", widest=24), Column("place [km]", "0.000"), Column("normal state")]
+    events = {s.id: _events(facts, s.id) for s in facts.scenario.supply.substations}
+    if any(events.values()):
+        columns.append(Column("out by events", widest=40))
     columns += [Column(heading_of("no_load_voltage_v"), "0"), Column(heading_of("internal_resistance_ohm"), "general")]
     getters: list[Callable[[str], Any]] = []
     for name, style in _FIGURES.items():
@@ -75,11 +78,22 @@ def _main(facts: Facts) -> tuple[list[Column], list[list[Any]]]:
             columns.append(Column(f"time of {heading_of(name).split(' [')[0]}", "time"))
             getters.append(lambda place, name=name: parse_time(facts.when(place, name)))  # type: ignore[misc]
     rows = [
-        [s.id, s.km, s.state.replace("_", " "), s.no_load_voltage_v, s.internal_resistance_ohm]
+        [s.id, s.km, s.state.replace("_", " "), *([events[s.id]] if any(events.values()) else [])]
+        + [s.no_load_voltage_v, s.internal_resistance_ohm]
         + [get(f"substation {s.id}") for get in getters]
         for s in sorted(facts.scenario.supply.substations, key=lambda s: (s.km, s.id))
     ]
     return columns, rows
+
+
+def _events(facts: Facts, substation: str) -> str:
+    """Return in words what switch events do to a substation."""
+    told = []
+    for event in sorted(facts.scenario.supply.switch_events, key=lambda event: event.time):
+        if event.device == substation:
+            units = f"{event.units_in_service} units in service"
+            told.append(f"{format_time(event.time)} {units if event.state is None else event.state.replace('_', ' ')}")
+    return "; ".join(told)
 
 
 def _windows(page: Page, facts: Facts, title: str, pattern: re.Pattern[str]) -> Block | None:
