@@ -108,6 +108,8 @@ def pi_element(conductor, length):
     Exact for r ohm/m and g S/m: 1/(Z sinh(a l)) and tanh(a l/2)/Z with a = sqrt(r g), Z = sqrt(r/g) (telegraph equation).
     """
     r, g = conductor.ohm_per_m, conductor.siemens_per_m
+    if g == 0.0:
+        return 1.0 / (r * length), 0.0
     angle = np.sqrt(r * g) * length
     if angle < SHORT_ANGLE:
         return 1.0 / (r * length), 0.5 * g * length
@@ -117,14 +119,14 @@ def pi_element(conductor, length):
 
 @njit
 def _finish_conductors(network, work):
-    """Set the last element of every conductor that ports stand on, and where the rows of each span begin."""
-    row, k = 0, 0
-    while k < work.in_service[0]:
-        s = network.ports[work.order[k]].span
-        if s < 0:
-            k += 1
-            continue
+    """List the spans with ports; set the last element of every conductor that ports stand on, and where their rows begin."""
+    row = count = 0
+    for s in range(network.spans.shape[0]):
         span, span_work = network.spans[s], work.spans[s]
+        if span_work.ports == 0:
+            continue
+        work.active[count] = s
+        count += 1
         span_work.stale = True
         span_work.first_row = row
         row += 2 * span_work.ports + span.conductors
@@ -132,7 +134,7 @@ def _finish_conductors(network, work):
             w = work.conductors[c]
             if w.nodes > 0:
                 w.end_s, w.end_shunt_s = pi_element(network.conductors[c], span.length_m - w.last_m)
-        k += span_work.ports
+    work.in_service[1] = count
 
 
 @njit
@@ -151,19 +153,13 @@ def condense(network, work):
     if not _sweep(network, work):
         _clear(work.front.reshape(work.front.size))  # what the sweep left there when it gave up
         return False
-    n = 0
-    while n < work.in_service[0]:
-        s = network.ports[work.order[n]].span
-        if s < 0:
-            n += 1
-            continue
-        span = spans[s]
+    for n in range(work.in_service[1]):
+        span = spans[work.active[n]]
         ends = span.right_terminals + span.left_terminals
         for i in range(span.first_terminal, span.first_terminal + ends):
             node_v[terminals[i]] += condensed_b[i]
         for k in range(span.first_scatter, span.first_scatter + ends * (ends + 1) // 2):
             value[scatter[k]] += condensed[k]
-        n += work.spans[s].ports
     return True
 
 
@@ -175,14 +171,8 @@ def _sweep(network, work):
     """
     front, b, rows, order = work.front, work.front_b, work.row, work.order
     conductors, conductor_work = network.conductors, work.conductors
-    n = 0
-    while n < work.in_service[0]:
-        s = network.ports[order[n]].span
-        if s < 0:
-            n += 1
-            continue
-        span, span_work = network.spans[s], work.spans[s]
-        n += span_work.ports
+    for n in range(work.in_service[1]):
+        span, span_work = network.spans[work.active[n]], work.spans[work.active[n]]
         if not span_work.stale:
             continue
         ends = span.right_terminals + span.left_terminals
@@ -196,8 +186,9 @@ def _sweep(network, work):
                 if side.insertion == FIRST:
                     left = conductors[side.conductor].left_slot
                     _join(front, side.slot, left, side.conductance_s)
-                    front[side.slot, side.slot] += side.shunt_s
-                    front[left, left] += side.shunt_s
+                    if side.shunt_s > 0.0:
+                        front[side.slot, side.slot] += side.shunt_s
+                        front[left, left] += side.shunt_s
                 elif side.insertion == NEXT:
                     if not _advance(front, b, rows[row], side, slots):
                         return False
@@ -211,8 +202,9 @@ def _sweep(network, work):
             if conductor_work[c].nodes > 0:
                 f, right = conductors[c].front_slot, conductors[c].right_slot
                 _join(front, f, right, conductor_work[c].end_s)
-                front[f, f] += conductor_work[c].end_shunt_s
-                front[right, right] += conductor_work[c].end_shunt_s
+                if conductor_work[c].end_shunt_s > 0.0:
+                    front[f, f] += conductor_work[c].end_shunt_s
+                    front[right, right] += conductor_work[c].end_shunt_s
                 if not _eliminate(front, b, rows[row], f):
                     return False
                 row += 1
@@ -308,14 +300,8 @@ def expand(network, work):
     """From the potentials of the skeleton compute the voltages of all ports in spans [V]."""
     x, rows, order = work.front_b, work.row, work.order
     conductors, conductor_work, terminals, node_v = network.conductors, work.conductors, network.terminals, work.node_v
-    n = 0
-    while n < work.in_service[0]:
-        s = network.ports[order[n]].span
-        if s < 0:
-            n += 1
-            continue
-        span, span_work = network.spans[s], work.spans[s]
-        n += span_work.ports
+    for n in range(work.in_service[1]):
+        span, span_work = network.spans[work.active[n]], work.spans[work.active[n]]
         ends = span.right_terminals + span.left_terminals
         slots = ends + span.fronts
         for i in range(ends):

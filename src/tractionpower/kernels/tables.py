@@ -185,7 +185,8 @@ class Work(NamedTuple):
     conductors: NDArray[np.void]
     spans: NDArray[np.void]
     order: NDArray[np.int64]  # ports by span and place, those between skeleton nodes first; those not in service last
-    in_service: NDArray[np.int64]  # how many of `order` are in service, shape (1,)
+    in_service: NDArray[np.int64]  # how many of `order` are in service, and how many of `active` count; shape (2,)
+    active: NDArray[np.int64]  # spans that carry ports
     step_base: NDArray[np.float64]  # skeleton values without the conductors that ports stand on
     value: NDArray[np.float64]
     node_v: NDArray[np.float64]  # potentials of the skeleton nodes, ground last
@@ -210,7 +211,8 @@ def new_work(network: Network) -> Work:
         conductors=np.zeros(len(network.conductors), CONDUCTOR_WORK),
         spans=np.zeros(len(network.spans), SPAN_WORK),
         order=np.argsort(network.ports["span"], kind="stable").astype(np.int64),
-        in_service=np.array([ports], np.int64),
+        in_service=np.array([ports, 0], np.int64),
+        active=np.zeros(len(network.spans), np.int64),
         step_base=network.base.copy(),
         value=network.base.copy(),
         node_v=np.zeros(nodes + 1),
