@@ -11,6 +11,7 @@ import json
 import re
 import shutil
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -36,6 +37,9 @@ from tractionpower.results.parts import is_readable, join_parts, write_part
 
 RUN_FILE = "run.json"
 KEY_FIGURES_FILE = "key_figures.json"
+JOINING = 2
+"""Tables that are joined at a time: each needs memory for some row groups."""
+
 SCENARIO_FILE = "scenario.json"
 RUNNING = ".running"
 PARTIAL = "partial"
@@ -111,7 +115,8 @@ class RunWriter:
         """
         with uninterrupted():  # all is computed: a second or two, and Ctrl-C would throw it away
             with failures_told(self.folder):
-                files = [self._join(table) for table in TABLES if table in self._parts]
+                with ThreadPoolExecutor(JOINING) as threads:
+                    files = list(threads.map(self._join, [table for table in TABLES if table in self._parts]))
                 files.append(write_json(self.running / KEY_FIGURES_FILE, key_figures))
                 if self._scenario is not None:
                     files.append(self.running / SCENARIO_FILE)
