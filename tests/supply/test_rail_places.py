@@ -62,7 +62,7 @@ def test_potentials_between_the_nodes_are_those_of_the_telegraph_equation():
     """Spans without anything on them, with one load, and with several between two places."""
     loads = [tap(name, km, ampere=ampere) for name, km, ampere in (("a", 4.31, 700.0), ("b", 4.42, 300.0), ("c", 13.0, 900.0))]
     solved = Solved(*leaky(loads))
-    found = solved.rails
+    found = solved.rails_everywhere
     kms = np.array([km for _, km in found])
     expected = sum(along(kms, load.km, load.current_a) for load in loads)
     for name, km in (("A", 0.0), ("B", 20.0)):

@@ -65,12 +65,21 @@ class Solved:
 
     @property
     def rails(self):
-        """Rail potentials by tracks and kilometre [V]."""
+        """Rail potentials at cross-sections by tracks and kilometre [V]."""
         tables = self.tables
         return {
             (place.tracks, place.km): float(potential)
             for place, row in zip(tables.rail_places, tables.rail_table, strict=True)
-            if not np.isnan(potential := rail_potential(self.network, self.work, row))
+            if place.span < 0 and not np.isnan(potential := rail_potential(self.network, self.work, row))
+        }
+
+    @property
+    def rails_everywhere(self):
+        """The same at all places that are recorded."""
+        tables = self.tables
+        return {
+            (place.tracks, place.km): float(rail_potential(self.network, self.work, row))
+            for place, row in zip(tables.rail_places, tables.rail_table, strict=True)
         }
 
 
