@@ -126,7 +126,8 @@ class TouchCheck:
         return [self._row(n, places, trains, tracks) for n in range(len(self.limits))]
 
     def _row(self, n: int, places: Sequence[str], trains: Sequence[str], tracks: Sequence[str]) -> dict[str, Any]:
-        touch, fixed, moving = self.limits[n], self.places[n], self.trains[n]
+        touch, fixed, train = self.limits[n], self.places[n], self.trains[n]
+        moving = train.spells
         longest, place, when = 0.0, "", np.nan
         if len(fixed.longest_s):
             k = int(fixed.longest_s.argmax())
@@ -134,7 +135,7 @@ class TouchCheck:
         if len(moving.longest_s) and moving.longest_s.max() > longest:
             k = int(moving.longest_s.argmax())
             longest, when = float(moving.longest_s[k]), float(moving.longest_from_s[k])
-            place = f"train {trains[k]}, from track {tracks[int(moving.track[k])]}, km {moving.km[k]:.2f}"
+            place = f"train {trains[k]}, from track {tracks[int(train.track[k])]}, km {train.km[k]:.2f}"
         return {
             "limit": touch.limit.name,
             "voltage_v": touch.voltage_v,
@@ -153,32 +154,25 @@ class _MovingSpells:
     """Spells of trains above a voltage, with the place where the longest of each began; only rows above it are added."""
 
     def __init__(self, trains: int, voltage_v: float) -> None:
-        self._spells = TrainSpells(trains, voltage_v)
+        self.spells = TrainSpells(trains, voltage_v)
         self.track, self.km = np.zeros(trains, np.int64), np.full(trains, np.nan)
         self._last_s = np.full(trains, -np.inf)
         self._present = np.zeros((trains, 3))  # start of the present spell [s], number of the track, place [km]
 
     def add(self, time_s: Array, train: Numbers, volts: Array, place: tuple[Numbers, Array], step_s: float) -> None:
+        """Add rows: start of the step [s], train, potential [V], number of the track and place [km]; their step [s]."""
         if not len(train):
             return
-        self._spells.add(time_s, train, volts, step_s)
+        self.spells.add(time_s, train, volts, step_s)
         for k in np.unique(train).tolist():
             mine = np.flatnonzero(train == k)
             begins = np.diff(time_s[mine], prepend=self._last_s[k]) > GAP_STEPS * step_s
             starts = np.stack([time_s[mine], place[0][mine], place[1][mine]], axis=1)[begins]
             known = np.concatenate([self._present[k : k + 1], starts])
-            found = np.flatnonzero(known[:, 0] == self._spells.longest_from_s[k])
+            found = np.flatnonzero(known[:, 0] == self.spells.longest_from_s[k])
             if len(found):
                 self.track[k], self.km[k] = int(known[found[-1], 1]), known[found[-1], 2]
             self._present[k], self._last_s[k] = known[-1], time_s[mine[-1]]
-
-    @property
-    def longest_s(self) -> Array:
-        return self._spells.longest_s
-
-    @property
-    def longest_from_s(self) -> Array:
-        return self._spells.longest_from_s
 
 
 def touch_verdicts(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
