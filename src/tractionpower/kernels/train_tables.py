@@ -72,6 +72,13 @@ TRAIN = np.dtype(
         ("first_off", "i8"),  # into `points`: what the front may take (`POWERED`, ...) from a place on, the first at 0
         ("offs", "i8"),
         ("service_mps2", "f8"),  # deceleration of the service brake on level straight track
+        ("first_plan", "i8"),  # into `pieces`: the ceiling that the driver keeps while it is on time
+        ("plans", "i8"),  # 0: flat out
+        ("first_cap", "i8"),  # into `points`: share of the greatest effort from a place on, 0 coasts; the first at 0
+        ("caps", "i8"),
+        ("first_due", "i8"),  # into `points`: when the front must be at a place so that the plan still arrives on time
+        ("dues", "i8"),
+        ("late_s", "f8"),  # lateness from which on it is driven flat out
         ("coast_s", "f8"),  # for how long it coasts on a dead line before it brakes to a stand
         ("route_m", "f8"),
         ("start_s", "f8"),
@@ -173,6 +180,7 @@ MOVER = np.dtype(
         ("below", "i4"),  # notch that takes turns with it, -1: off
         ("slowing", "?"),  # whether it lost speed in the step before
         ("relay_open", "?"),
+        ("late", "?"),  # driven flat out until it is on time again
     ],
     align=True,
 )

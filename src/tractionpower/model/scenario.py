@@ -14,8 +14,9 @@ from tractionpower.model.conductors import Conductor, used_conductors
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.quantity import field
+from tractionpower.model.services import unfold
 from tractionpower.model.supply import Supply
-from tractionpower.model.timetable import Timetable
+from tractionpower.model.timetable import Day, Timetable, TrainRun
 from tractionpower.model.vehicle import Train, Vehicle
 
 
@@ -60,6 +61,7 @@ class StudyFile(Declaration):
     supply: Text = Field(default="supply.yaml", description="File of the supply system.")
     timetable: Text | None = Field(default=None, description="File of the timetable; left out: a network calculation.")
     clock: Clock = Field(description="The simulated time.")
+    day: Day | None = Field(default=None, description="Day of the week, where trains have days of operation.")
     coupling: Literal["full", "constant_voltage"] = Field(
         default="full", description="full: trains and network in one step; constant_voltage: currents at a fixed voltage."
     )
@@ -92,6 +94,7 @@ class Scenario(Declaration):
     trains: tuple[Train, ...] = ()
     vehicles: tuple[Vehicle, ...] = ()
     clock: Clock
+    day: Day | None = None
     coupling: Literal["full", "constant_voltage"] = "full"
     coupling_voltage_v: Real | None = None
     seed: Count = 1
@@ -104,6 +107,11 @@ class Scenario(Declaration):
     def _keeps_what_it_uses(self) -> Scenario:
         self.__dict__["conductors"] = used_conductors(self.supply, self.conductors)
         return self
+
+    @property
+    def runs(self) -> tuple[TrainRun, ...]:
+        """All trains of the day, those of services included."""
+        return unfold(self.timetable, self.day)
 
     @property
     def input_hash(self) -> str:

@@ -18,7 +18,7 @@ def check_categories(scenario: Scenario) -> list[Problem]:
     """
     named = _of_limits(scenario.line.speed_limits)
     trains = {train.id for train in scenario.trains}
-    runs = scenario.timetable.trains
+    runs = scenario.runs
     if not named or not runs or any(run.train is not None and run.train not in trains for run in runs):
         return []
     owned = _of_trains(scenario)
@@ -45,7 +45,7 @@ def _of_limits(rows: Sequence[SpeedLimit]) -> Mapping[str, str]:
 
 def _of_trains(scenario: Scenario) -> Mapping[str, str]:
     """Return the path of each category where a run or its train first names it."""
-    runs = scenario.timetable.trains
+    runs = scenario.runs
     paths = item_paths("trains", [train.id for train in scenario.trains])
     trains = {train.id: (train, path) for train, path in zip(scenario.trains, paths, strict=True)}
     found: dict[str, str] = {}

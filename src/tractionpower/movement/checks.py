@@ -35,7 +35,7 @@ def check_movement(scenario: Scenario) -> list[Problem]:
     broken = broken_rules(scenario, ("timetable", "trains", "vehicles"))
     if broken:  # built in Python past the model: nothing can be relied on
         return broken
-    runs = scenario.timetable.trains
+    runs = scenario.runs
     problems = _check_ids(scenario)
     vehicles = {vehicle.id: vehicle for vehicle in scenario.vehicles}
     trains = {train.id: train for train in scenario.trains}
@@ -69,7 +69,7 @@ def check_movement(scenario: Scenario) -> list[Problem]:
 
 def _check_ids(scenario: Scenario) -> list[Problem]:
     ids = {
-        "timetable.trains": [run.id for run in scenario.timetable.trains],
+        "timetable.trains": [run.id for run in scenario.runs],
         "trains": [train.id for train in scenario.trains],
         "vehicles": [vehicle.id for vehicle in scenario.vehicles],
     }
@@ -89,7 +89,7 @@ def _voltages(scenario: Scenario) -> SystemVoltages | None:
 
 def _longest_m(scenario: Scenario, vehicles: dict[str, Vehicle]) -> float:
     """Return the length of the longest train all of whose vehicles exist [m]."""
-    named = [train.vehicles for train in scenario.trains] + [run.vehicles for run in scenario.timetable.trains if run.vehicles]
+    named = [train.vehicles for train in scenario.trains] + [run.vehicles for run in scenario.runs if run.vehicles]
     whole = [parts for parts in named if all(part.id in vehicles for part in parts)]
     return max((form(Train(id="train", vehicles=parts), vehicles).length_m for parts in whole), default=0.0)
 

@@ -106,7 +106,7 @@ def compile_trains(scenario: Scenario, runs: Sequence[str] | None = None) -> Mov
         Identifiers of the runs to take; left out: all.
     """
     voltages = system_voltages(scenario.limits, scenario.supply.system)
-    chosen = sorted((run for run in scenario.timetable.trains if runs is None or run.id in runs), key=lambda run: run.id)
+    chosen = sorted((run for run in scenario.runs if runs is None or run.id in runs), key=lambda run: run.id)
     planned = plan_runs(scenario, chosen)
     knee = knee_factor(scenario.limits, scenario.supply.system)
     pools, rows = _Pools(), []

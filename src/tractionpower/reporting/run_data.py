@@ -72,7 +72,7 @@ class RunData:
     @cached_property
     def planned(self) -> dict[str, PlannedRun]:
         """Runs of the timetable on their routes, by identifier."""
-        runs = plan_runs(self.scenario, sorted(self.scenario.timetable.trains, key=lambda run: run.id))
+        runs = plan_runs(self.scenario, sorted(self.scenario.runs, key=lambda run: run.id))
         return {planned.run.id: planned for planned in runs}
 
     @cached_property

@@ -220,7 +220,7 @@ def choose_runs(scenario: Scenario, named: Sequence[str] | None) -> list[str]:
     UsageError
         If there are no trains at all, or a name is unknown.
     """
-    known = sorted(run.id for run in scenario.timetable.trains)
+    known = sorted(run.id for run in scenario.runs)
     if not known:
         remedy = "name a timetable with trains in study.yaml; `tractionpower run` computes the network alone"
         raise UsageError(f"the study has no trains; {remedy}")

@@ -83,7 +83,7 @@ def _head(facts: Facts) -> Iterator[Said]:
     begin, end = format_time(run.get("start_s", clock.start)), format_time(run.get("end_s", clock.end))
     supply = facts.scenario.supply
     kinds = (
-        (len(facts.scenario.timetable.trains), "train"),
+        (len(facts.scenario.runs), "train"),
         (len(supply.substations), "substation"),
         (len(supply.section_cabins), "section cabin"),
         (len(supply.loads), "fixed load"),
@@ -103,7 +103,7 @@ def _count(number: int, kind: str) -> str:
 
 
 def _coupling(facts: Facts) -> str:
-    if not facts.scenario.timetable.trains:
+    if not facts.scenario.runs:
         return "A network calculation: the study has no trains."
     if facts.run.get("coupling", facts.scenario.coupling) == "full":
         return "Full: trains and network limit each other in the same step."

@@ -105,7 +105,7 @@ class Facts:
     @cached_property
     def runs(self) -> dict[str, TrainRun]:
         """The runs of the timetable by identifier."""
-        return {run.id: run for run in self.scenario.timetable.trains}
+        return {run.id: run for run in self.scenario.runs}
 
     @cached_property
     def station_names(self) -> dict[str, str]:

@@ -43,7 +43,7 @@ def add(book: Book) -> None:
         page.note(f"Source: {scenario.line.source}")
     page.note(LEFT_OUT)
     _lists(page, scenario.line, Line)
-    if scenario.timetable.trains:
+    if scenario.runs:
         _stock(book)
         _timetable(book)
     _limits(book)
@@ -121,7 +121,7 @@ def _stock(book: Book) -> None:
     scenario = book.facts.scenario
     page = book.page("Inputs stock", "Inputs as used: trains and vehicles")
     vehicles = {vehicle.id: vehicle for vehicle in scenario.vehicles}
-    used = {train.id: train for train in (train_of(run, scenario.trains) for run in scenario.timetable.trains)}
+    used = {train.id: train for train in (train_of(run, scenario.trains) for run in scenario.runs)}
     columns = [Column("train", widest=30), Column("name", widest=30), Column("formation", widest=60), Column("category")]
     columns += [
         Column("vehicles", "0"),
@@ -173,7 +173,7 @@ def _timetable(book: Book) -> None:
     columns += [Column("to", widest=30), Column("start", "time"), Column("start speed [km/h]", "general"), Column("end")]
     columns += [Column("calls", "0"), Column("route", widest=60)]
     rows = []
-    for run in sorted(book.facts.scenario.timetable.trains, key=lambda run: run.id):
+    for run in sorted(book.facts.scenario.runs, key=lambda run: run.id):
         begin = run.start.time if run.start is not None else run.calls[0].departure
         legs = "; ".join(f"track {leg.track}, km {leg.from_km:g} to {leg.to_km:g}" for leg in run.route)
         formation = run.train or formation_in_words(run.vehicles)
@@ -192,7 +192,7 @@ def _timetable(book: Book) -> None:
                 legs,
             ]
         )
-    if any(run.calls for run in book.facts.scenario.timetable.trains):
+    if any(run.calls for run in book.facts.scenario.runs):
         page.note("Planned times of the calls are on sheet Calls.")
     page.table(columns, rows, frozen=True)
 
