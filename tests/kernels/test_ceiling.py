@@ -12,7 +12,8 @@ LIMITS = [(-1.0, 1.0, 72.0), (1.0, 1.2, 108.0), (1.2, 4.0, 54.0)]
 
 @njit
 def meet(tables, train, mover, acceleration, way):
-    return meet_ceiling(tables, train, mover, acceleration, way)
+    rows = (train.first_piece + mover.piece, train.first_piece + train.pieces - 1)
+    return meet_ceiling(tables, train, mover, rows, acceleration, way)
 
 
 @njit

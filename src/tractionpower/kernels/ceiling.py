@@ -8,12 +8,14 @@ from tractionpower.kernels.jit import inlined
 
 
 @inlined
-def meet_ceiling(tables, train, mover, acceleration, way):
-    """Shorten a way (distance, time, speed at its end) to where it meets the ceiling or the end of the route."""
+def meet_ceiling(tables, train, mover, rows, acceleration, way):
+    """Shorten a way (distance, time, speed at its end) to where it meets the ceiling or the end of the route.
+
+    `rows` are the row of the ceiling where the front is, and its last one.
+    """
     distance, spent, speed = way
     pieces, s, w = tables.pieces, mover.s_m, mover.v_mps * mover.v_mps
-    last = train.first_piece + train.pieces - 1
-    for q in range(train.first_piece + mover.piece, last):
+    for q in range(rows[0], rows[1]):
         piece = pieces[q]
         until = min(pieces[q + 1].from_m, s + distance)
         ceiling = piece.w + piece.dw * (until - piece.from_m)

@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from tractionpower.kernels.ceiling import meet_ceiling, time_of
+from tractionpower.kernels.driver import NO_CEILING, follows_plan, planned_here
 from tractionpower.kernels.effort import greatest_effort
 from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.tally import TINY_S, add_brake, add_resistance, add_traction, clear, mark
@@ -47,7 +48,6 @@ from tractionpower.kernels.without_line import (
     stand_without_line,
 )
 
-_ON_CEILING = 1e-10
 _MOST_IDLE = 1000
 _CUTS = 6
 _NEWTON_STEPS = 30
@@ -69,7 +69,7 @@ def run_step(tables, train, mover, tally, clock, cap_w, called):
     called : tuple
         Arrays of arrivals and departures by row of the stops [s], which are written.
     """
-    if train.offs > 0 or mover.lost_s < np.inf:
+    if train.offs > 0 or mover.lost_s < np.inf or train.plans > 0:
         _run_restricted(tables, train, mover, tally, clock, cap_w, called)
     else:
         _run_phases(tables, train, mover, tally, clock, cap_w, called, False)
@@ -77,13 +77,13 @@ def run_step(tables, train, mover, tally, clock, cap_w, called):
 
 @njit
 def _run_restricted(tables, train, mover, tally, clock, cap_w, called):
-    """Do what `run_step` does on a route with stretches without power, or on a dead line."""
+    """Do what `run_step` does by a plan, on a route with stretches without power, or on a dead line."""
     _run_phases(tables, train, mover, tally, clock, cap_w, called, True)
 
 
 @inlined
 def _run_phases(tables, train, mover, tally, clock, cap_w, called, is_restricted):
-    """Run the phases of a step; whether power may be off anywhere is known when this is compiled, twice."""
+    """Run the phases of a step; whether there is a plan, or power may be off, is known when this is compiled, twice."""
     clear(tally, mover.v_mps)
     now, end = clock[0], clock[0] + clock[1]
     idle = 0
@@ -167,43 +167,57 @@ def _run(tables, train, mover, tally, time, cap_w, called, is_restricted):
     while p < last - 1 and pieces[p + 1].from_m <= mover.s_m:
         p += 1
     mover.piece = p - train.first_piece
-    piece = pieces[p]
-    ceiling = piece.w + piece.dw * (mover.s_m - piece.from_m)
-    w = mover.v_mps * mover.v_mps
-    is_below = w < ceiling - _ON_CEILING * (1.0 + ceiling) or mover.v_mps == 0.0
-    if is_restricted:
-        return _run_where_allowed(tables, train, mover, tally, time, cap_w, called, is_below)
     now, left = time
-    if is_below:
-        return _accelerate(tables, train, mover, tally, (now, left, mover.v_mps * left, True, np.inf), cap_w, called)
-    return _follow(tables, train, mover, tally, (now, left, np.inf), cap_w, called)
+    if is_restricted:
+        return _run_where_allowed(tables, train, mover, tally, time, cap_w, called)
+    rows, caps = (p, last), (cap_w, 1.0)
+    if _is_below(tables, mover, p):
+        return _accelerate(tables, train, mover, tally, (now, left, mover.v_mps * left, True, np.inf), rows, caps, called)
+    return _follow(tables, train, mover, tally, (now, left, np.inf), rows, caps, called)
+
+
+@inlined
+def _is_below(tables, mover, p):
+    """Tell whether a train may go faster: it stands, or is below its ceiling, whose row is `p`."""
+    piece = tables.pieces[p]
+    ceiling = piece.w + piece.dw * (mover.s_m - piece.from_m)
+    return mover.v_mps * mover.v_mps < ceiling - NO_CEILING * (1.0 + ceiling) or mover.v_mps == 0.0
 
 
 @njit
-def _run_where_allowed(tables, train, mover, tally, time, cap_w, called, is_below):
-    """Run one phase on a route with stretches without power, or on a dead line; return the time spent [s]."""
+def _run_where_allowed(tables, train, mover, tally, time, cap_w, called):
+    """Run one phase by a plan, on a route with stretches without power, or on a dead line; return the time spent [s]."""
     now = time[0]
     allowed, room, left = allowed_here(tables, train, mover, time)
-    cap_w = cap_w if allowed == POWERED else 0.0
+    share, rows = 1.0, (train.first_piece + mover.piece, train.first_piece + train.pieces - 1)
+    if follows_plan(train, mover):
+        share, way, p, last = planned_here(tables, train, mover)
+        room, rows = min(room, way), (p, last)
+    caps = (cap_w if allowed == POWERED else 0.0, share)
     before = so_far(tally)
-    falls = tables.pieces[train.first_piece + mover.piece].dw < 0.0
+    is_below, falls = _is_below(tables, mover, rows[0]), tables.pieces[rows[0]].dw < 0.0
     if allowed == FORCED and (is_below or not falls):
-        spent = brake_to_stand(tables, train, mover, tally, (now, left), called)
+        spent = brake_to_stand(tables, train, mover, tally, (now, left), rows, called)
     elif is_below:
-        spent = _accelerate(tables, train, mover, tally, (now, left, mover.v_mps * left, True, room), cap_w, called)
+        spent = _accelerate(tables, train, mover, tally, (now, left, mover.v_mps * left, True, room), rows, caps, called)
     else:
-        spent = _follow(tables, train, mover, tally, (now, left, room), cap_w, called)
+        spent = _follow(tables, train, mover, tally, (now, left, room), rows, caps, called)
     if allowed != POWERED:
         note_without_line(train, mover, tally, before, allowed, spent)
     return spent
 
 
 @inlined
-def _effort(tables, train, mover, v, cap_w):
-    """Return effort [N], its derivative and what limits it, below the power `cap_w` [W] at the wheel as well."""
-    if cap_w <= 0.0:
-        return 0.0, 0.0, BY_DRIVE
+def _effort(tables, train, mover, v, caps):
+    """Return effort [N], its derivative and what limits it.
+
+    `caps` are a power at the wheel [W] and the share of the greatest effort that the driver asks for.
+    """
+    cap_w, share = caps
+    if cap_w <= 0.0 or share <= 0.0:
+        return 0.0, 0.0, BY_DRIVE if share > 0.0 else BY_NOTHING
     effort, slope, by = greatest_effort(tables, train, mover, v)
+    effort, slope = share * effort, share * slope
     if effort * v > cap_w:
         effort = cap_w / v
         slope = -effort / v
@@ -211,7 +225,7 @@ def _effort(tables, train, mover, v, cap_w):
 
 
 @inlined
-def _balance(tables, train, mover, track, tau, cap_w):
+def _balance(tables, train, mover, track, tau, caps):
     """Return effort and resistance [N] at the mean speed [m/s] that they lead to within `tau` [s], and what limits it.
 
     The mean speed solves v_m = v + (F(v_m) - W(v_m)) tau / 2 M: the implicit midpoint rule, by Newton's method. A small
@@ -223,7 +237,7 @@ def _balance(tables, train, mover, track, tau, cap_w):
     mean, low, high = v, -1.0, v + half * train.start_n + 1e3
     effort, resistance, by = 0.0, 0.0, BY_DRIVE
     for _ in range(_NEWTON_STEPS):
-        effort, slope, by = _effort(tables, train, mover, mean, cap_w)
+        effort, slope, by = _effort(tables, train, mover, mean, caps)
         resistance, rise = resistance_at(train, track, mean)
         gap = v + half * (effort - resistance) - mean
         if gap > 0.0:
@@ -239,11 +253,12 @@ def _balance(tables, train, mover, track, tau, cap_w):
 
 
 @inlined
-def _accelerate(tables, train, mover, tally, time, cap_w, called):
+def _accelerate(tables, train, mover, tally, time, rows, caps, called):
     """Run with the greatest effort until the time is up, the ceiling is met, the route ends or the train comes to a stand.
 
     `time` holds now, the time left, about how far the train comes [m], whether the ceiling can be met, and the way to where
-    power goes off or on [m].
+    power goes off or on, or the plan changes [m]; `rows` are the row of the ceiling here and its last one, `caps` those of
+    `_effort`.
     """
     now, tau, distance, free, room = time
     v, meant = mover.v_mps, tau
@@ -253,10 +268,10 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
     for _ in range(_CUTS):  # a way that is cut short has another middle and mean speed
         thought = distance
         track = additional_resistance(tables, train, mover, mover.s_m + 0.5 * distance, distance)
-        mean, effort, resistance, by = _balance(tables, train, mover, track, meant, cap_w)
+        mean, effort, resistance, by = _balance(tables, train, mover, track, meant, caps)
         if v == 0.0 and mean <= 0.0:
-            mark(tally, HOLDING if effort > 0.0 else _unpowered(train), by)
-            tally.wished_ns += train.start_n * tau
+            mark(tally, HOLDING if effort > 0.0 else _unpowered(train, caps), by)
+            tally.wished_ns += caps[1] * train.start_n * tau
             return tau
         acceleration = (effort - resistance) / train.inertia_kg
         spent, speed = tau, v + acceleration * tau
@@ -264,15 +279,16 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
             spent, speed = -v / acceleration, 0.0
         distance = 0.5 * (v + speed) * spent
         if free:
-            distance, spent, speed = meet_ceiling(tables, train, mover, acceleration, (distance, spent, speed))
+            distance, spent, speed = meet_ceiling(tables, train, mover, rows, acceleration, (distance, spent, speed))
         if distance > room:
             distance, speed = room, np.sqrt(max(v * v + 2.0 * acceleration * room, 0.0))
             spent = time_of(distance, v, speed)
         if abs(spent - meant) <= TINY_S and abs(distance - thought) <= near * (0.1 + distance):
             break
         meant = max(spent, TINY_S)
-    mark(tally, ACCELERATING if effort > 0.0 else _unpowered(train), BY_NOTHING if effort >= train.start_n else by)
-    tally.wished_ns += train.start_n * spent
+    full_n = caps[1] * train.start_n
+    mark(tally, ACCELERATING if effort > 0.0 else _unpowered(train, caps), BY_NOTHING if effort >= full_n else by)
+    tally.wished_ns += full_n * spent
     add_traction(tables, train, mover, tally, effort, (distance, spent))
     add_resistance(tally, resistance, distance, spent)
     _advance(tables, train, mover, called, (now, distance, acceleration), speed)
@@ -280,10 +296,10 @@ def _accelerate(tables, train, mover, tally, time, cap_w, called):
 
 
 @inlined
-def _follow(tables, train, mover, tally, time, cap_w, called):
+def _follow(tables, train, mover, tally, time, rows, caps, called):
     """Follow the ceiling to the end of its piece or of the time; fall below it where the effort is too small."""
     now, left, room = time
-    p = train.first_piece + mover.piece
+    p = rows[0]
     piece, end = tables.pieces[p], min(tables.pieces[p + 1].from_m, mover.s_m + room)
     v, slowing = mover.v_mps, -0.5 * piece.dw
     final = np.sqrt(max(piece.w + piece.dw * (end - piece.from_m), 0.0))
@@ -297,9 +313,9 @@ def _follow(tables, train, mover, tally, time, cap_w, called):
     resistance, _ = resistance_at(train, track, mean)
     needed = resistance - train.inertia_kg * slowing
     if needed > 0.0:
-        effort, _, _ = _effort(tables, train, mover, mean, cap_w)
+        effort, _, _ = _effort(tables, train, mover, mean, caps)
         if needed > effort:
-            return _accelerate(tables, train, mover, tally, (now, spent, distance, False, room), cap_w, called)
+            return _accelerate(tables, train, mover, tally, (now, spent, distance, False, room), rows, caps, called)
         add_traction(tables, train, mover, tally, needed, (distance, spent))
     else:
         add_brake(train, tally, -needed, distance, spent)
@@ -318,5 +334,5 @@ def _advance(tables, train, mover, called, way, speed):
 
 
 @inlined
-def _unpowered(train):
-    return COASTING if train.drive == NO_DRIVE else UNPOWERED
+def _unpowered(train, caps):
+    return COASTING if train.drive == NO_DRIVE or caps[1] == 0.0 else UNPOWERED

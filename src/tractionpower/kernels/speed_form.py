@@ -79,7 +79,7 @@ def _speed_step(tables, state, k, clock, u, row):
     now, dv = clock
     train, mover = tables.trains[k], state.movers[k]
     gap = _ceiling(tables, train, mover, mover.s_m) - mover.v_mps * mover.v_mps
-    if not u > 0.0 or (train.offs > 0 and power_off_at(tables, train, mover)[0] != POWERED):
+    if train.plans > 0 or not u > 0.0 or (train.offs > 0 and power_off_at(tables, train, mover)[0] != POWERED):
         return 0.0
     if train.drive == SERIES_MOTORS and (mover.relay_open or u < train.relay_off_v or mover.relay_since_s < np.inf):
         return 0.0

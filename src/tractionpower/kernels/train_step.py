@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from tractionpower.kernels.demand import demand_current, demanded_traction, fill_row, own_current
+from tractionpower.kernels.driver import judge_time
 from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.motion import run_step
 from tractionpower.kernels.pantograph import auxiliary_current, current_limit
@@ -45,6 +46,8 @@ def wish(tables, state, k, t, h, is_dead=False):
     called = (state.arrived_s, state.left_s)
     if is_dead or mover.lost_s < np.inf:
         mover.lost_s = min(mover.lost_s, t) if is_dead and train.drive != NO_DRIVE else np.inf
+    if train.dues > 0:
+        judge_time(tables, train, mover, t)
     state.trials[k] = mover
     if train.drive == SERIES_MOTORS:
         _switch_relay(train, trial, t, h)

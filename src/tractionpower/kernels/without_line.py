@@ -106,7 +106,7 @@ def stand_without_line(tables, train, mover, tally, time):
 
 
 @njit
-def brake_to_stand(tables, train, mover, tally, time, called):
+def brake_to_stand(tables, train, mover, tally, time, rows, called):
     """Brake with the service brake on a dead line until the train stands or the time is up; return the time spent [s].
 
     The deceleration is that of braking curves: changed by the slope under the train, not below a tenth of the service brake.
@@ -129,7 +129,7 @@ def brake_to_stand(tables, train, mover, tally, time, called):
         if speed < 0.0:
             spent, speed = v / rate, 0.0
         distance = 0.5 * (v + speed) * spent
-        distance, spent, speed = meet_ceiling(tables, train, mover, -rate, (distance, spent, speed))
+        distance, spent, speed = meet_ceiling(tables, train, mover, rows, -rate, (distance, spent, speed))
         if abs(distance - thought) <= 1e-3 * (0.1 + distance):
             break
     resistance, _ = resistance_at(train, track, 0.5 * (v + speed))
