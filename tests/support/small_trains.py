@@ -1,5 +1,7 @@
 """Small scenarios with one or a few trains on a line without much on it, made in two lines, and their journeys."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np
@@ -124,7 +126,7 @@ def make_trains(length_km: float = 10.0, **more: Any) -> Scenario:
 
 LINE_KEYS = ("limits", "slopes", "stations", "curves", "tunnels", "train_current_limits", "curve_resistance", "tracks")
 LINE_KEYS += ("power_off",)
-RUN_KEYS = ("time", "speed_kmh", "end", "calls", "backwards")
+RUN_KEYS = ("time", "speed_kmh", "end", "calls", "backwards", "driving", "max_current_a", "max_power_kw")
 TRAIN_KEYS = ("mass_distribution", "vehicles")
 
 
@@ -154,8 +156,17 @@ class Stepper:
     """Steps one train by hand with a voltage of one's own at each step, and keeps its rows."""
 
     def __init__(self, scenario: Scenario, k: int = 0) -> None:
-        self.movement: Movement = compile_trains(scenario)
-        self.tables = self.movement.tables
+        self._take(compile_trains(scenario), k)
+
+    @classmethod
+    def of(cls, movement: Movement, k: int = 0) -> Stepper:
+        """Return a stepper of trains that are compiled already."""
+        found = cls.__new__(cls)
+        found._take(movement, k)
+        return found
+
+    def _take(self, movement: Movement, k: int) -> None:
+        self.movement, self.tables = movement, movement.tables
         self.state = new_train_state(self.tables)
         self.k, self.time_s = k, float(self.tables.trains[k]["start_s"])
         self._rows: list[Any] = []

@@ -13,7 +13,8 @@ from tractionpower.kernels.block_tables import FLEET, LOAD, LOAD_STEP, SOURCE, W
 from tractionpower.kernels.train_port import ROOM
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import Supply
-from tractionpower.movement.compile import Movement, compile_trains
+from tractionpower.movement.compile import Movement
+from tractionpower.movement.driven import compile_driven
 from tractionpower.supply.characteristics import load_steps, no_load_voltage
 from tractionpower.supply.compile import Stretch, SupplyTables, compile_network
 
@@ -43,7 +44,7 @@ class CompiledScenario:
 
 def compile_scenario(scenario: Scenario) -> CompiledScenario:
     """Return the tables of a scenario of which `check.check_scenario` has found no errors."""
-    return assemble(scenario, compile_trains(scenario), scenario.supply)
+    return assemble(scenario, compile_driven(scenario), scenario.supply)
 
 
 def assemble(scenario: Scenario, movement: Movement, states: Supply) -> CompiledScenario:

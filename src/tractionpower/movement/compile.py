@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,6 +13,7 @@ from tractionpower.alignment.axis import TrackAxis, compile_axes
 from tractionpower.alignment.path import RoutePath, compile_path
 from tractionpower.alignment.routes import stop_distance
 from tractionpower.kernels.train_tables import (
+    INVERTER,
     KNOT,
     LEAVE,
     LINE_LIMIT,
@@ -235,9 +236,11 @@ def _train_row(item: PlannedRun, voltages: SystemVoltages, knee: float, coast_s:
         "end": item.end,
     }
     columns |= compile_drive(mass, voltages, knee, pools)
+    if item.run.max_power_kw is not None and columns["drive"] == INVERTER:  # the checks refuse it for other drives
+        columns["power_w"] = min(columns["power_w"], item.run.max_power_kw * 1e3)
     columns["first_knot"], columns["knots"] = pools.knots.add(_knots(item))
     columns["first_piece"], columns["pieces"] = pools.pieces.add(ceiling_of(item))
-    columns["first_limit"], columns["limits"] = pools.limits.add(_line_limits(item.path))
+    columns["first_limit"], columns["limits"] = pools.limits.add(_line_limits(item))
     columns["first_off"], columns["offs"] = pools.points.add(_power_off(item.path))
     columns["first_stop"], columns["stops"] = len(pools.stops), len(item.calls)  # calls are written to: never shared
     pools.stops += [_stop(planned) for planned in item.calls]
@@ -253,14 +256,17 @@ def _knots(item: PlannedRun) -> Any:
     return knots
 
 
-def ceiling_of(item: PlannedRun) -> Any:
-    """Return the speed ceiling of a run, as records of PIECE up to the end of the run."""
+def ceiling_of(item: PlannedRun, share: float = 1.0, max_mps: float = np.inf) -> Any:
+    """Return the speed ceiling of a run, as records of PIECE up to the end of the run.
+
+    `share` lowers all limits, `max_mps` is a greatest speed beside that of the train [m/s].
+    """
     mass, path = item.formation, item.path
     stops = [planned.at_m for planned in item.calls if planned.call.stops]
     pieces = compile_ceiling(
-        path,
+        path if share == 1.0 else replace(path, limit_mps=share * path.limit_mps),
         length_m=mass.length_m,
-        max_mps=mass.max_mps,
+        max_mps=min(share * mass.max_mps, max_mps),
         rate_mps2=mass.service_rate_mps2,
         weight_per_inertia=mass.mass_kg * GRAVITY / mass.inertia_kg,
         spread_m=mass.spread_m,
@@ -274,12 +280,14 @@ def ceiling_of(item: PlannedRun) -> Any:
     return np.concatenate((inside, last))
 
 
-def _line_limits(path: RoutePath) -> Any:
-    if not np.isfinite([*path.max_current_a, *path.standstill_current_a]).any():
+def _line_limits(item: PlannedRun) -> Any:
+    """Return the largest train currents along the route; while the train moves that of its run holds as well."""
+    path, own_a = item.path, item.run.max_current_a
+    if own_a is None and not np.isfinite([*path.max_current_a, *path.standstill_current_a]).any():
         return []
     rows = np.zeros(len(path.current_from_m), LINE_LIMIT)
     rows["from_m"] = path.current_from_m
-    rows["max_a"] = np.minimum(path.max_current_a, NO_LIMIT)
+    rows["max_a"] = np.minimum(path.max_current_a, NO_LIMIT if own_a is None else own_a)
     still = np.where(np.isfinite(path.standstill_current_a), path.standstill_current_a, path.max_current_a)
     rows["standstill_a"] = np.minimum(still, NO_LIMIT)
     return rows

@@ -15,7 +15,8 @@ from tractionpower.kernels.speed_form import run_over_speed
 from tractionpower.kernels.train_tables import POINT, TRAIN_ROW, TrainState, new_train_state
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.timetable import TrainRun
-from tractionpower.movement.compile import Movement, PlannedRun, compile_trains
+from tractionpower.movement.compile import Movement, PlannedRun
+from tractionpower.movement.driven import compile_driven
 from tractionpower.movement.formation import Formation
 from tractionpower.movement.ledgers import TrainLedger, mechanical_ledger, pantograph_ledger
 
@@ -115,7 +116,7 @@ def theoretical_journeys(
     runs
         Identifiers of the runs; left out: all.
     """
-    movement = compile_trains(scenario, runs)
+    movement = compile_driven(scenario, runs)
     given = movement.voltages.u_n if voltage_v is None else voltage_v
     points = [(0.0, given)] if isinstance(given, int | float) else list(given)
     voltage = np.array(points, POINT)

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.kernels.train_tables import PIECE, POINT
+from tractionpower.movement.compile import Movement
+from tractionpower.movement.pools import Pool
+
+Rows = NDArray[np.void]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +33,22 @@ class Plan:
         Lateness from which on the train is driven flat out until it is on time again [s].
     """
 
-    pieces: NDArray[np.void]
-    caps: NDArray[np.void]
-    dues: NDArray[np.void]
+    pieces: Rows
+    caps: Rows
+    dues: Rows
     late_after_s: float
 
 
-NO_PLAN = Plan(np.zeros(0, PIECE), np.zeros(0, POINT), np.zeros(0, POINT), np.inf)
-"""Flat out."""
+def lay_plans(movement: Movement, plans: Mapping[int, Plan]) -> Movement:
+    """Return the trains of `movement` with the plans of some of them, by their number; the others are driven flat out."""
+    tables = movement.tables
+    pieces, points, trains = Pool(PIECE), Pool(POINT), tables.trains.copy()
+    pieces.add(tables.pieces)
+    points.add(tables.points)
+    for k, plan in plans.items():
+        row = trains[k]
+        row["first_plan"], row["plans"] = pieces.add(plan.pieces)
+        row["first_cap"], row["caps"] = points.add(plan.caps)
+        row["first_due"], row["dues"] = points.add(plan.dues)
+        row["late_s"] = plan.late_after_s
+    return replace(movement, tables=tables._replace(trains=trains, pieces=pieces.array(), points=points.array()))
