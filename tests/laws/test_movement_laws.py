@@ -153,3 +153,40 @@ def test_no_step_takes_from_the_line_without_a_use(seed, base_v):
             assert row["traction_n"] == 0.0
         if stepper.gone:
             break
+
+
+def random_driving(seed: int, scenario: Scenario) -> Scenario:
+    """Return a random study whose train is driven by random rules, with planned times that it may keep or not."""
+    rng = np.random.default_rng((11, seed))
+    rules: dict[str, Any] = {"kind": "rules", "speed_percent": float(rng.uniform(40.0, 100.0))}
+    if rng.random() < 0.6:
+        rules["coast_from"] = [{"km": float(rng.uniform(0.0, 8.0))} for _ in range(rng.integers(1, 4))]
+    if rng.random() < 0.5:
+        rules["coast_before_stops_km"] = float(rng.uniform(0.2, 3.0))
+    if rng.random() < 0.3:
+        rules["effort_percent"] = float(rng.uniform(60.0, 100.0))
+    if rng.random() < 0.4:
+        rules["coast_down_to_kmh"] = float(rng.uniform(5.0, 60.0))
+    plain = scenario.model_dump(by_alias=True)
+    plain["timetable"]["trains"][0]["driving"] = rules
+    for planned in plain["timetable"]["trains"][0]["calls"]:
+        if rng.random() < 0.6:
+            planned["arrival"] = float(np.round(rng.uniform(200.0, 1500.0)))
+    return Scenario.model_validate(plain)
+
+
+@LAW
+@given(seed=SEEDS, voltage_v=st.floats(2400.0, 3400.0), step_s=st.sampled_from([0.2, 1.0]))
+def test_a_plan_keeps_the_ceiling_and_is_never_earlier_than_flat_out(seed, voltage_v, step_s):
+    level = seed % 2 == 0
+    scenario = random_study(seed, **({"slopes": []} if level else {}))
+    flat, found = (journey(study, voltage_v=voltage_v, step_s=step_s) for study in (scenario, random_driving(seed, scenario)))
+    rows = found.rows
+    piece = found.ceiling[np.searchsorted(found.ceiling["from_m"], rows["s_m"], side="right") - 1]
+    assert (rows["v_mps"] ** 2 <= piece["w"] + piece["dw"] * (rows["s_m"] - piece["from_m"]) + 1e-7).all()
+    assert arrival(found) >= arrival(flat) - EARLIER_S
+    if step_s < 1.0 or found.formation.spread_m > 0.0:
+        assert found.ledgers()["mechanical"].gap_share < 1e-2
+    assert found.ledgers()["pantograph_to_wheel"].closes
+    if flat.status == "complete" and level:  # on a hill a train that has coasted may lack the speed to get over it
+        assert found.status == "complete"

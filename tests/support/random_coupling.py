@@ -38,6 +38,9 @@ class RandomCoupling:
         vehicles = [self._vehicle(k) for k in range(rng.integers(1, 5))]
         runs = [self._run(k, [str(each["id"]) for each in vehicles]) for k in range(rng.integers(2, 7))]
         self.more = np.random.default_rng((8, seed))  # what came later: the other draws stay as they were
+        self.plans = np.random.default_rng((9, seed))
+        for run in runs:
+            self._drive(run)
         used = sorted({str(run["train"]) for run in runs})
         vehicles = [each for each in vehicles if each["id"] in used]
         self.scenario = Scenario.model_validate(
@@ -206,3 +209,27 @@ class RandomCoupling:
             "calls": calls,
             "end": end,
         }
+
+    def _drive(self, run: Row) -> None:
+        """Let most trains drive by rules, and be late or early at calls with a planned time."""
+        rng = self.plans
+        if rng.random() < 0.3:
+            return
+        how: Row = {"kind": "rules", "speed_percent": round(rng.uniform(40.0, 100.0), 1)}
+        if rng.random() < 0.5:
+            how["coast_before_stops_km"] = round(rng.uniform(0.3, 3.0), 2)
+        if rng.random() < 0.4:
+            how["coast_from"] = [{"km": round(rng.uniform(0.0, self.length), 3)} for _ in range(rng.integers(1, 3))]
+        if rng.random() < 0.3:
+            how["coast_down_to_kmh"] = round(rng.uniform(10.0, 60.0), 1)
+        if rng.random() < 0.3:
+            how["effort_percent"] = round(rng.uniform(30.0, 100.0), 1)
+        run["driving"] = how | {"late_after_s": round(rng.uniform(0.0, 20.0), 1)}
+        if rng.random() < 0.3:
+            run["max_current_a"] = round(rng.uniform(200.0, 1500.0), 1)
+        place = {f"s{n}": round(n * self.length / 4, 3) for n in range(5)}
+        pace = rng.uniform(8.0, 30.0)
+        for call in run["calls"]:
+            if rng.random() < 0.7:
+                way = abs(place[call["station"]] - run["route"][0]["from_km"]) * 1e3
+                call["arrival"] = round(run["start"]["time"] + 1.0 + way / pace, 1)

@@ -23,7 +23,10 @@ from tractionpower.movement.stock_checks import check_train, check_vehicle
 from tractionpower.movement.telling import item_paths, listed
 from tractionpower.movement.timetable_checks import check_clock
 
-SHARED = ("cannot_start", "no_contact_line", "no_drive", "no_traction", "stop_without_power", "turns_round", "weak_brake")
+SHARED = (
+    "cannot_start", "no_contact_line", "no_drive", "no_traction", "nothing_to_drive_to", "stop_without_power", "turns_round",
+    "weak_brake",
+)  # fmt: skip
 """Problems that are told once for all runs of which they are true in the same words."""
 
 
@@ -60,6 +63,7 @@ def check_movement(scenario: Scenario) -> list[Problem]:
         voltages=voltages,
         contact=place_rows(enumerate(scenario.supply.contact_lines), axes),
         routes=Routes(scenario.line, axes, _longest_m(scenario, vehicles)),
+        driving=scenario.timetable.driving,
     )
     paths = item_paths("timetable.trains", [run.id for run in runs])
     problems += _share((run.id, problem) for path, run in zip(paths, runs, strict=True) for problem in check_run(path, run, site))

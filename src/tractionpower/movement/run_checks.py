@@ -15,6 +15,7 @@ from tractionpower.alignment.routes import check_route, check_speed_limits, name
 from tractionpower.errors import Problem, Severity
 from tractionpower.kernels.train_tables import POWERED
 from tractionpower.kernels.wayside import HERE_M
+from tractionpower.model.driving import Driving
 from tractionpower.model.limits import SystemVoltages
 from tractionpower.model.line import Line, Station
 from tractionpower.model.timetable import Call, Leg, TrainRun
@@ -22,6 +23,7 @@ from tractionpower.model.vehicle import Train, Vehicle
 from tractionpower.movement.ceiling import LOWEST_SHARE
 from tractionpower.movement.climbing import find_stall, hard_stretches, least_braking, starting_effort_n
 from tractionpower.movement.compile import PlannedRun, Routes, ceiling_of, plan_run, train_of
+from tractionpower.movement.driving_checks import check_driving
 from tractionpower.movement.formation import KMH, Formation, form
 from tractionpower.movement.stock_checks import auxiliary_current_a, check_train
 from tractionpower.movement.telling import doubt, listed, unknown
@@ -49,6 +51,8 @@ class Site:
         Where rows of the contact line lie.
     routes
         The routes of runs as paths.
+    driving
+        How trains are driven that do not say it.
     bare
         What of a route has no contact line, once it was asked for.
     """
@@ -62,6 +66,7 @@ class Site:
     voltages: SystemVoltages | None
     contact: Coverage
     routes: Routes
+    driving: Driving | None = None
     bare: dict[tuple[Leg, ...], list[str]] = field(default_factory=dict)
 
 
@@ -160,6 +165,7 @@ def _check_planned(path: str, planned: PlannedRun, site: Site) -> list[Problem]:
     ceiling = ceiling_of(planned)
     problems = [*_check_start(path, planned, float(ceiling["w"][0])), *_check_brakes(path, planned)]
     problems += _check_line_current(path, planned, site.voltages)
+    problems += check_driving(path, planned, site.driving)
     if planned.formation.driver is None:
         return [*problems, _no_drive(path, planned, ceiling)]
     problems += _check_power_off(path, planned)
