@@ -12,6 +12,7 @@ import peers
 import report
 import solver
 import startup
+import timetable
 import train
 
 
@@ -32,6 +33,10 @@ def _line(quick: bool) -> str:
     return line.describe(line.measure(1 if quick else 5))
 
 
+def _timetable(quick: bool) -> str:
+    return timetable.describe(timetable.measure(1 if quick else 3))
+
+
 def _peers(quick: bool) -> str:
     return peers.describe(peers.compare(*((30, 3) if quick else (60, 11))))
 
@@ -45,6 +50,7 @@ PARTS: dict[str, Callable[[bool], str]] = {
     "train": _train,
     "day": _day,
     "line": _line,
+    "timetable": _timetable,
     "peers": _peers,
     "startup": _startup,
 }
