@@ -96,3 +96,40 @@ def test_the_examples_of_the_page_of_the_network_run(network_examples):
         assert outcome.run["status"] == "complete"
         assert outcome.run["ledgers"]["electric"]["closes"]
         assert results.table("substations")["current_a"].max() > 400.0
+
+
+@pytest.fixture(scope="module")
+def timetable_examples(tmp_path_factory):
+    """Return the studies of the page of the timetable: each timetable on its line and supply, on a Friday."""
+    page = (ROOT / "docs" / "timetable.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```yaml\n# (line|supply|timetable)\.yaml\n(.*?)```", page, re.DOTALL)
+    assert len(blocks) == page.count("```yaml")
+    parts, studies = {kind: text for kind, text in blocks if kind != "timetable"}, []
+    for text in (text for kind, text in blocks if kind == "timetable"):
+        folder = tmp_path_factory.mktemp("timetable")
+        clock = '"00:00:00", end: "24:00:00"' if "carry_over" in text else '"06:00:00", end: "07:05:00", warm_up: "00:05:00"'
+        study = f"clock: {{start: {clock}}}\nday: fri\ntimetable: timetable.yaml\n"
+        for kind, content in (parts | {"timetable": text, "study": study}).items():
+            (folder / f"{kind}.yaml").write_text(content, encoding="utf-8")
+        studies.append(tractionpower.load(folder))
+    return studies
+
+
+def test_the_examples_of_the_page_of_the_timetable_are_sound(timetable_examples):
+    assert len(timetable_examples) == 8
+    shown = {key for study in timetable_examples for key, value in study.timetable if value}
+    assert {"trains", "services", "rotations", "joins", "splits", "carry_over"} <= shown
+    for study in timetable_examples:
+        assert tractionpower.check(study) == []
+    names = [[run.id for run in study.runs] for study in timetable_examples]
+    assert ["R1 06:00", "R1 06:20", "R1 06:40"] in names
+    assert ["777", "R2 06:10", "R2 06:40"] in names
+    assert ["N 23:50", "N 24:20", "N 23:50 (day before)", "N 24:20 (day before)"] in names
+
+
+def test_the_examples_of_the_page_of_the_timetable_run(timetable_examples):
+    for study in timetable_examples[:-1]:
+        results, outcome, _ = run_in_memory(study)
+        assert outcome.run["status"] == "complete"
+        assert {each["status"] for each in results.run["trains"]} == {"left"}
+        assert results.table("calls")["late_s"].max() < 5.0

@@ -128,3 +128,11 @@ def test_of_a_run_they_are_those_of_the_rows(busy):
     for (a, b), steps in found.items():
         assert f"{a} and {b} (" in told["message"]
         assert f"{steps} steps" in told["message"]
+
+
+def test_portions_of_one_train_may_stand_together():
+    time_s, train = np.zeros(3), np.array([2, 0, 1])
+    placed = Placed(np.zeros(3, np.int64), np.array([1.0, 1.02, 1.04]), np.ones(3, np.int64))
+    found = Overlaps("abc", np.full(3, 0.1), TRACKS, {(0, 2)})
+    found.add(time_s, train, placed)
+    assert sorted(found.pairs) == [(0, 1), (1, 2)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,10 +34,18 @@ class Overlaps:
         Trains by number, and their lengths [km].
     tracks
         Identifiers of the tracks by number.
+    together
+        Pairs of trains, the lower number first, that may: portions of one train.
     """
 
-    def __init__(self, names: Sequence[str], lengths_km: NDArray[np.float64], tracks: Sequence[str]) -> None:
-        self._names, self._lengths_km, self._tracks = names, lengths_km, tracks
+    def __init__(
+        self,
+        names: Sequence[str],
+        lengths_km: NDArray[np.float64],
+        tracks: Sequence[str],
+        together: Collection[tuple[int, int]] = (),
+    ) -> None:
+        self._names, self._lengths_km, self._tracks, self._together = names, lengths_km, tracks, together
         self.pairs: dict[tuple[int, int], Overlap] = {}
 
     def add(self, time_s: NDArray[np.float64], train: Numbers, placed: Placed) -> None:
@@ -49,6 +57,8 @@ class Overlaps:
         high = low + length[order]
         for n, m in _reaching(time_s, track, low, high):
             pair = sorted((int(train[n]), int(train[m])))
+            if (pair[0], pair[1]) in self._together:
+                continue
             new = Overlap(0, float(time_s[n]), int(track[n]), float(low[m]))
             self.pairs.setdefault((pair[0], pair[1]), new).steps += 1
 

@@ -57,6 +57,7 @@ def assemble(scenario: Scenario, movement: Movement, states: Supply) -> Compiled
     fleet, ways = _compile_fleet(movement, supply, room)
     clock = np.array([scenario.clock.start, scenario.clock.step_s, coupling_voltage(scenario, supply) or 0.0])
     entries = np.argsort(movement.tables.trains["start_s"], kind="stable").astype(np.int64)
+    entries = entries[movement.tables.trains["waits"][entries] == 0]
     block = BlockTables(
         supply.network, supply.edges, _sources(supply), *_loads(supply), supply.link_table, supply.terms,
         supply.rail_table, supply.earth_edge, supply.triggers, supply.section_table, clock,

@@ -27,6 +27,7 @@ from tractionpower.movement.ledgers import (
     pantograph_parts,
     told_kwh,
 )
+from tractionpower.movement.turns import together
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.spells import TrainSpells
 from tractionpower.results.trains import CallRow, SupplySummary, TrainSummary, supply_figures, train_figures, useful_figures
@@ -99,7 +100,7 @@ class TrainRecorder:
         self.names, self.places = self.movement.names, Places(scenario, self.movement)
         trains, voltages = len(self.names), compiled.supply.voltages
         lengths = np.array([planned.formation.length_m for planned in self.movement.runs]) / 1000.0
-        self.overlaps = Overlaps(self.names, lengths, self.places.tracks)
+        self.overlaps = Overlaps(self.names, lengths, self.places.tracks, together(scenario.timetable, self.names))
         self.events = TrainEvents(self.names, self.places, voltages, self.step_s)
         self._mechanical = np.zeros((trains, len(MECHANICAL)))
         self._pantograph = np.zeros((trains, len(PANTOGRAPH)))
@@ -188,8 +189,8 @@ class TrainRecorder:
             if mover["status"] == OUTSIDE:
                 table += call_rows(self.names[k], calls, planned.route_m)
                 continue
-            if planned.start_s >= clock_s:
-                self.events.note("train_entered", k, planned.start_s, 0.0)
+            if self._entered_s(k) >= clock_s:
+                self.events.note("train_entered", k, self._entered_s(k), 0.0)
             for call in calls:
                 if call.kind == "stop" and call.arrival_s >= clock_s:
                     self.events.note("stop", k, call.arrival_s, call.at_m, call.station)
@@ -202,6 +203,10 @@ class TrainRecorder:
 
     def _calls(self, k: int) -> tuple[JourneyCall, ...]:
         return calls_of(self.movement.runs[k], self._state.trains, int(self._block.trains.trains[k]["first_stop"]))
+
+    def _entered_s(self, k: int) -> float:
+        """Return when train `k` came onto the line, or took others over there [s]."""
+        return float(self._state.trains.entered_s[k])
 
     def on_dead_line(self) -> list[str]:
         """Return the trains that stand or coast on a contact line that nothing feeds."""
@@ -251,7 +256,7 @@ class TrainRecorder:
             {
                 "train": self.names[k],
                 "status": _status(mover, clock_s),
-                "entered_s": None if mover["status"] == OUTSIDE else planned.start_s,
+                "entered_s": None if mover["status"] == OUTSIDE else self._entered_s(k),
                 "finished_s": None if np.isnan(mover["finished_s"]) else float(mover["finished_s"]),
                 "distance_m": float(mover["s_m"]),
                 "overdue_s": overdue_by(call_rows(self.names[k], self._calls(k), planned.route_m), now_s),
@@ -271,7 +276,7 @@ class TrainRecorder:
                 continue
             mover, calls = self._state.trains.movers[k], self._calls(k)
             finished = float(mover["finished_s"]) if np.isfinite(mover["finished_s"]) else end_s
-            begin = max(planned.start_s, self._from_s)
+            begin = max(self._entered_s(k), self._from_s)
             whole = finished - begin
             stood = time_at_stops(calls, begin, finished)
             sums = dict(zip(FIGURES, self._figures[k].tolist(), strict=True))

@@ -104,16 +104,16 @@ class RollingStock:
         return find_rolling_stock(kind, identifier, self._folder) is not None
 
     def add_timetable(self, content: Input) -> None:
-        """Read the trains and vehicles that the runs of a timetable name."""
-        runs = content.data.get("trains")
-        for index, run in enumerate(runs if isinstance(runs, list) else ()):
-            if not isinstance(run, dict):
-                continue
-            loc: Loc = ("trains", index, "train")
-            train = _identifier(run.get("train"))
-            if train is not None:
-                self.add_train(train, content, loc)
-            self._add_parts(run, content, ("trains", index))
+        """Read the trains and vehicles that the runs and services of a timetable name."""
+        for key in ("trains", "services"):
+            runs = content.data.get(key)
+            for index, run in enumerate(runs if isinstance(runs, list) else ()):
+                if not isinstance(run, dict):
+                    continue
+                train = _identifier(run.get("train"))
+                if train is not None:
+                    self.add_train(train, content, (key, index, "train"))
+                self._add_parts(run, content, (key, index))
 
     def add_train(self, identifier: str, namer: Input | None = None, loc: Loc = ()) -> None:
         """Read a train, which the file `namer` names at `loc`, and its vehicles."""

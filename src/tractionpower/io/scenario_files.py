@@ -137,7 +137,7 @@ def save_scenario(scenario: Scenario, folder: str | Path) -> None:
     texts = {"line.yaml": document(_dump(scenario.line)), "supply.yaml": document(supply)}
     texts |= {name: text for name, text in profiles.items() if text}
     study: dict[str, Any] = {"format": FORMAT, "line": "line.yaml", "supply": "supply.yaml"}
-    if scenario.timetable.trains:
+    if scenario.timetable != Timetable():
         study["timetable"] = "timetable.yaml"
         texts["timetable.yaml"] = document(_dump(scenario.timetable))
     texts |= _stock_texts("vehicles", scenario.vehicles) | _stock_texts("trains", scenario.trains)

@@ -85,7 +85,7 @@ class BlockTables(NamedTuple):
     fleet, ways
         The same trains in the network, record array of `FLEET`, and the stretches of their routes, of `WAY`.
     entries
-        Trains in the order of their starts.
+        Trains in the order of their starts, without those that others become.
     """
 
     network: Network
@@ -113,6 +113,7 @@ PROGRESS = np.dtype(
         ("stale", "?"),  # whether ports have come or gone since
         ("active", "i8"),  # trains on the line
         ("entered", "i8"),  # trains that have come onto the line, of `BlockTables.entries`
+        ("turning", "?"),  # whether all have finished that become a train which has not come onto the line yet
     ],
     align=True,
 )

@@ -10,33 +10,70 @@ from tractionpower.kernels.ports import port_current
 from tractionpower.kernels.tally import TINY_S
 from tractionpower.kernels.train_port import write_constant_port, write_port
 from tractionpower.kernels.train_step import brakes_after_traction, expect_braking, settle, wish
-from tractionpower.kernels.train_tables import GONE
+from tractionpower.kernels.train_tables import GONE, STAYING
+from tractionpower.kernels.turns import hands_over, may_begin, note_finish
 
 
 @njit
 def enter_trains(tables, state, t):
-    """Put the trains that start before the end of the step at `t` [s] on the line."""
-    progress, fleet = state.progress[0], tables.fleet
+    """Put the trains that start before the end of the step at `t` [s] on the line, and those that others become there.
+
+    A train that others become takes their place in the step after the one in which the last of them has finished.
+    """
+    progress = state.progress[0]
     before = progress.active
+    if progress.turning:
+        _turn(tables, state, t)
     while progress.entered < tables.entries.shape[0]:
         k = tables.entries[progress.entered]
         if tables.trains.trains[k].start_s >= t + tables.clock[1] - TINY_S:
             break
         progress.entered += 1
-        if state.trains.movers[k].status == GONE:  # before the clock began
-            continue
-        at = progress.active
-        while at > 0 and state.active[at - 1] > k:
-            state.active[at] = state.active[at - 1]
-            at -= 1
-        state.active[at] = k
-        progress.active += 1
-        w = state.work.ports[fleet[k].port]
-        w.before_v, w.i = np.inf, 0.0
-        _place(tables, state, k)
-        w.u = tables.network.ports[fleet[k].port].start_v
+        if state.trains.movers[k].status != GONE:  # before the clock began
+            _enter(tables, state, k)
     if progress.active != before:
         _choose_ports(tables, state)
+
+
+@inlined
+def _enter(tables, state, k):
+    """Put train `k` on the line; trains there are in the order of their numbers."""
+    progress = state.progress[0]
+    at = progress.active
+    while at > 0 and state.active[at - 1] > k:
+        state.active[at] = state.active[at - 1]
+        at -= 1
+    state.active[at] = k
+    progress.active += 1
+    w = state.work.ports[tables.fleet[k].port]
+    w.before_v, w.i = np.inf, 0.0
+    _place(tables, state, k)
+    w.u = tables.network.ports[tables.fleet[k].port].start_v
+
+
+@njit
+def _turn(tables, state, t):
+    """Let trains whose forerunners have all finished begin, and take those off the line."""
+    progress, trains = state.progress[0], state.trains
+    stay = 0
+    for n in range(progress.active):
+        k = state.active[n]
+        state.active[stay] = k
+        if not hands_over(tables.trains, trains, k):
+            stay += 1
+    if stay != progress.active:
+        progress.active = stay
+        _choose_ports(tables, state)  # as many may come as go
+    progress.turning = False
+    for k in range(tables.fleet.shape[0]):
+        if tables.trains.trains[k].waits == 0 or trains.missing[k] != 0:
+            continue
+        if not may_begin(tables.trains, trains, k, t + tables.clock[1] - TINY_S):
+            progress.turning = True
+            continue
+        if trains.movers[k].status != GONE:  # before the clock began
+            _enter(tables, state, k)
+            _choose_ports(tables, state)
 
 
 @inlined
@@ -127,7 +164,10 @@ def answer_trains(tables, state, t, rows, used):
             train, trial, demand = tables.trains.trains[k], state.trains.trials[k], state.trains.demands[k]
             at, served = fixed_v, 1.0
             own, _ = demand_current(tables.trains, train, trial, demand, fixed_v)
+        was = state.trains.movers[k].status
         settle(tables.trains, state.trains, k, (t, tables.clock[1]), (at, own, served), row)
+        if was < STAYING and state.trains.movers[k].status >= STAYING and note_finish(tables.trains, state.trains, k):
+            progress.turning = True
         row.coupling_w = u * i - at * own
         earthed = tables.ways[tables.fleet[k].first_way + state.way[k]].earthed
         row.rail_v = state.work.sides[tables.fleet[k].port, 1].node_v if earthed else np.nan

@@ -93,9 +93,9 @@ def _run_phases(tables, train, mover, tally, clock, cap_w, called, is_restricted
         if left <= TINY_S or mover.status == GONE:
             break
         if mover.status == OUTSIDE:
-            if train.start_s >= end - TINY_S:
+            if mover.leave_s >= end - TINY_S:
                 break
-            now = max(now, train.start_s)
+            now = max(now, mover.leave_s)
             mover.status = RUNNING
             continue
         if mover.status == RUNNING and _arrive(tables, train, mover, now, called):

@@ -84,6 +84,10 @@ TRAIN = np.dtype(
         ("start_s", "f8"),
         ("start_mps", "f8"),
         ("end", "i8"),
+        ("first_turn", "i8"),  # into `turns`
+        ("turns", "i8"),  # trains that it becomes
+        ("waits", "i8"),  # trains that become it: it begins when all of them have finished
+        ("takes_over", "?"),  # it stands where they ended, with its auxiliaries, until it may leave
     ],
     align=True,
 )
@@ -108,6 +112,9 @@ POWERED, COASTS, DARK = 0, 1, 2
 
 POINT = np.dtype([("x", "f8"), ("y", "f8")])
 """A point of a curve."""
+
+TURN = np.dtype([("then", "i8"), ("turn_s", "f8")])
+"""The train that another one becomes at its end, and the shortest time between them."""
 
 CURVE = np.dtype([("voltage_v", "f8"), ("first_effort", "i8"), ("efforts", "i8"), ("first_loss", "i8"), ("losses", "i8")])
 """Effort [N] and losses between line and wheel [W] over speed [m/s] at one voltage, as points."""
@@ -141,6 +148,7 @@ class TrainTables(NamedTuple):
     notches: NDArray[np.void]
     motor: NDArray[np.void]
     points: NDArray[np.void]
+    turns: NDArray[np.void]
 
 
 OUTSIDE, RUNNING, STANDING, STAYING, GONE = 0, 1, 2, 3, 4
@@ -167,7 +175,7 @@ MOVER = np.dtype(
         ("front", "i8"),  # knot before the front
         ("tail", "i8"),  # knot before the tail
         ("stop", "i8"),  # next call
-        ("leave_s", "f8"),  # when it may leave the stop it stands at
+        ("leave_s", "f8"),  # when it may leave the stop it stands at, or come onto the line
         ("lost_s", "f8"),  # since when the line has been dead; infinite: it is not
         ("notch_since_s", "f8"),
         ("relay_since_s", "f8"),  # since when the voltage asks for the other position; infinite: it does not
@@ -277,6 +285,8 @@ class TrainState(NamedTuple):
     done: NDArray[np.void]  # TALLY of the step
     arrived_s: NDArray[np.float64]  # by row of `TrainTables.stops`; NaN: not yet
     left_s: NDArray[np.float64]
+    missing: NDArray[np.int64]  # trains that have to finish before it may begin
+    entered_s: NDArray[np.float64]  # when it comes onto the line; of one that takes others over, when the last had finished
 
 
 def new_train_state(tables: TrainTables) -> TrainState:
@@ -284,6 +294,7 @@ def new_train_state(tables: TrainTables) -> TrainState:
     trains, stops = len(tables.trains), len(tables.stops)
     movers = np.zeros(trains, MOVER)
     movers["v_mps"] = tables.trains["start_mps"]
+    movers["leave_s"] = tables.trains["start_s"]
     movers["relay_since_s"] = np.inf
     movers["notch_since_s"] = -np.inf
     movers["finished_s"] = np.nan
@@ -297,4 +308,6 @@ def new_train_state(tables: TrainTables) -> TrainState:
         done=np.zeros(trains, TALLY),
         arrived_s=np.full(stops, np.nan),
         left_s=np.full(stops, np.nan),
+        missing=tables.trains["waits"].copy(),
+        entered_s=np.where(tables.trains["waits"] > 0, -np.inf, tables.trains["start_s"]),
     )

@@ -63,11 +63,13 @@ def parse_time(text: str) -> float | None:
 
 
 def format_time(seconds: float) -> str:
-    """Return seconds after midnight as ``HH:MM:SS``, with a fraction only where there is one.
+    """Return seconds after midnight as ``HH:MM:SS``, with a fraction only where there is one, and a sign before midnight.
 
     >>> format_time(90030.0)
     '25:00:30'
     """
+    if round(seconds * 10**_DECIMALS) < 0:
+        return f"-{format_time(-seconds)}"
     whole, fraction = divmod(round(seconds * 10**_DECIMALS), 10**_DECIMALS)
     text = f"{whole // 3600:02d}:{whole // 60 % 60:02d}:{whole % 60:02d}"
     return f"{text}.{fraction:0{_DECIMALS}d}".rstrip("0") if fraction else text

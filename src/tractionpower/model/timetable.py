@@ -108,6 +108,12 @@ class Service(_Trip):
     start_speed_kmh: Real = field("start_speed_kmh", "Speed at which the runs enter.", at_least=0, default=0.0)
     calls: tuple[Call, ...] = Field(default=(), description="Stations in the order of the run; times are counted from its start.")
 
+    @model_validator(mode="after")
+    def _runs(self) -> Service:
+        if self.last < self.first:
+            raise PydanticCustomError("service", "last is before first; past midnight hours go on beyond 24")
+        return self
+
 
 class Rotation(Declaration):
     """What becomes of trains at the end of their runs: each turns into the next one of a list."""
@@ -145,3 +151,8 @@ class Timetable(Declaration):
     rotations: tuple[Rotation, ...] = Field(default=(), description="Trains that turn into others.")
     joins: tuple[Join, ...] = Field(default=(), description="Portions that are joined.")
     splits: tuple[Split, ...] = Field(default=(), description="Trains that are split.")
+    carry_over: bool = Field(
+        default=False,
+        strict=True,
+        description="Whether trains of the day before that are under way past 24:00 run at the start of this one as well.",
+    )

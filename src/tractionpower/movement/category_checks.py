@@ -8,6 +8,7 @@ from tractionpower.errors import Problem
 from tractionpower.io.wording import did_you_mean, nearest, shown
 from tractionpower.model.line import SpeedLimit
 from tractionpower.model.scenario import Scenario
+from tractionpower.movement.declared import declared_runs
 from tractionpower.movement.telling import doubt, item_paths, listed
 
 
@@ -18,7 +19,7 @@ def check_categories(scenario: Scenario) -> list[Problem]:
     """
     named = _of_limits(scenario.line.speed_limits)
     trains = {train.id for train in scenario.trains}
-    runs = scenario.runs
+    runs = [item.run for item in declared_runs(scenario)]
     if not named or not runs or any(run.train is not None and run.train not in trains for run in runs):
         return []
     owned = _of_trains(scenario)
@@ -45,13 +46,13 @@ def _of_limits(rows: Sequence[SpeedLimit]) -> Mapping[str, str]:
 
 def _of_trains(scenario: Scenario) -> Mapping[str, str]:
     """Return the path of each category where a run or its train first names it."""
-    runs = scenario.runs
     paths = item_paths("trains", [train.id for train in scenario.trains])
     trains = {train.id: (train, path) for train, path in zip(scenario.trains, paths, strict=True)}
     found: dict[str, str] = {}
-    for path, run in zip(item_paths("timetable.trains", [run.id for run in runs]), runs, strict=True):
+    for item in declared_runs(scenario):
+        run = item.run
         if run.category is not None:
-            found.setdefault(run.category, f"{path}.category")
+            found.setdefault(run.category, f"{item.path}.category")
         elif run.train is not None:
             train, of_train = trains[run.train]
             if train.category is not None:

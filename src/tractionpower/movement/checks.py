@@ -13,15 +13,21 @@ from tractionpower.model.drive import InverterDrive
 from tractionpower.model.limits import VOLTAGE_NAMES, SystemVoltages, find_limit, system_voltages
 from tractionpower.model.rules import broken_rules
 from tractionpower.model.scenario import Scenario
+from tractionpower.model.timetable import TrainRun
 from tractionpower.model.vehicle import Train, Vehicle
 from tractionpower.movement.category_checks import check_categories
-from tractionpower.movement.compile import Routes, knee_factor
+from tractionpower.movement.compile import PlannedRun, Routes, knee_factor, plan_run, train_of
+from tractionpower.movement.day_checks import check_days
+from tractionpower.movement.declared import declared_runs
 from tractionpower.movement.drive_checks import check_knee
 from tractionpower.movement.formation import form
+from tractionpower.movement.pace_checks import check_pace
 from tractionpower.movement.run_checks import Site, check_run
 from tractionpower.movement.stock_checks import check_train, check_vehicle
 from tractionpower.movement.telling import item_paths, listed
 from tractionpower.movement.timetable_checks import check_clock
+from tractionpower.movement.turn_checks import check_turns
+from tractionpower.movement.turns import declared_links
 
 SHARED = (
     "cannot_start", "no_contact_line", "no_drive", "no_traction", "nothing_to_drive_to", "stop_without_power", "turns_round",
@@ -38,8 +44,7 @@ def check_movement(scenario: Scenario) -> list[Problem]:
     broken = broken_rules(scenario, ("timetable", "trains", "vehicles"))
     if broken:  # built in Python past the model: nothing can be relied on
         return broken
-    runs = scenario.runs
-    problems = _check_ids(scenario)
+    problems = [*check_days(scenario), *_check_ids(scenario)]
     vehicles = {vehicle.id: vehicle for vehicle in scenario.vehicles}
     trains = {train.id: train for train in scenario.trains}
     voltages = _voltages(scenario)
@@ -65,19 +70,47 @@ def check_movement(scenario: Scenario) -> list[Problem]:
         routes=Routes(scenario.line, axes, _longest_m(scenario, vehicles)),
         driving=scenario.timetable.driving,
     )
-    paths = item_paths("timetable.trains", [run.id for run in runs])
-    problems += _share((run.id, problem) for path, run in zip(paths, runs, strict=True) for problem in check_run(path, run, site))
-    problems += check_clock(paths, runs, scenario.clock) + check_categories(scenario)
-    return problems + _check_default_knee(scenario, voltages)
+    return [*problems, *_check_runs(scenario, site), *_check_default_knee(scenario, voltages)]
+
+
+def _check_runs(scenario: Scenario, site: Site) -> list[Problem]:
+    """Return what is wrong or doubtful with the runs of the day, each by itself and with others; of a service once."""
+    declared = declared_runs(scenario)
+    told = {
+        item.path: [replace(found, path=item.moved(found.path)) for found in check_run(item.path, item.run, site)]
+        for item in declared
+    }
+    problems = _share((item.run.id, problem) for item in declared for problem in told[item.path])
+    problems += check_clock(declared, scenario.clock) + check_categories(scenario)
+    sound = [item for item in declared if not _has_errors(told[item.path])]
+    turning = {name for link in declared_links(scenario.timetable) for name in (link.first, link.then)}
+    planned = {run.id: _plan(item.run, site) for item in sound for run in item.runs if run.id in turning}
+    problems += check_turns(scenario, planned)
+    if site.voltages is None or _has_errors(_check_default_knee(scenario, site.voltages)):
+        return problems
+    return problems + check_pace(scenario, [item for item in sound if _drives(item.run, site)])
 
 
 def _check_ids(scenario: Scenario) -> list[Problem]:
     ids = {
-        "timetable.trains": [run.id for run in scenario.runs],
         "trains": [train.id for train in scenario.trains],
         "vehicles": [vehicle.id for vehicle in scenario.vehicles],
     }
     return [problem for path, names in ids.items() for problem in check_ids(path, names)]
+
+
+def _plan(run: TrainRun, site: Site) -> PlannedRun:
+    """Return a run without errors on its route."""
+    train = train_of(run, tuple(site.trains.values()))
+    return plan_run(run, train, form(train, site.vehicles), site.routes.path(run, train), site.line)
+
+
+def _drives(run: TrainRun, site: Site) -> bool:
+    """Tell whether the train of a run without errors has a drive, and neither it nor one of its vehicles has errors."""
+    train = train_of(run, tuple(site.trains.values()))
+    if run.train in site.faulty_trains or not site.faulty_vehicles.isdisjoint(part.id for part in train.vehicles):
+        return False
+    return form(train, site.vehicles).driver is not None
 
 
 def _has_errors(problems: Iterable[Problem]) -> bool:

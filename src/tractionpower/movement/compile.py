@@ -23,6 +23,7 @@ from tractionpower.kernels.train_tables import (
     STOP,
     STOP_THERE,
     TRAIN,
+    TURN,
     TrainTables,
 )
 from tractionpower.kernels.wayside import GRAVITY
@@ -35,6 +36,7 @@ from tractionpower.movement.ceiling import compile_ceiling
 from tractionpower.movement.drives import NO_LIMIT, DrivePools, compile_drive, pool_arrays
 from tractionpower.movement.formation import KMH, Formation, form
 from tractionpower.movement.pools import Pool
+from tractionpower.movement.turns import link_turns
 
 AT_START_M = 1e-3
 """A call this near to the start of the route is where the run begins, not where it ends [m]."""
@@ -113,7 +115,9 @@ def compile_trains(scenario: Scenario, runs: Sequence[str] | None = None) -> Mov
     pools, rows = _Pools(), []
     for item in planned:
         rows.append(_train_row(item, voltages, knee, scenario.coast_without_voltage_s, pools))
-    return Movement(pools.tables(np.array(rows, TRAIN) if rows else np.zeros(0, TRAIN)), tuple(planned), voltages)
+    tables = pools.tables(np.array(rows, TRAIN) if rows else np.zeros(0, TRAIN))
+    tables = link_turns(tables, [item.run.id for item in planned], scenario.timetable)
+    return Movement(tables, tuple(planned), voltages)
 
 
 def knee_factor(limits: Sequence[Limit], system: str) -> float:
@@ -211,6 +215,7 @@ class _Pools(DrivePools):
             pieces=self.pieces.array(),
             stops=np.array(self.stops, STOP) if self.stops else np.zeros(0, STOP),
             limits=self.limits.array(),
+            turns=np.zeros(0, TURN),
             **pool_arrays(self),
         )
 

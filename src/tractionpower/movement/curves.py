@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.kernels.characteristics import trace
-from tractionpower.kernels.train_tables import KNOT, LINE_LIMIT, MOVER, NO_DRIVE, PIECE, STOP, TRAIN, TrainTables
+from tractionpower.kernels.train_tables import KNOT, LINE_LIMIT, MOVER, NO_DRIVE, PIECE, STOP, TRAIN, TURN, TrainTables
 from tractionpower.kernels.wayside import GRAVITY
 from tractionpower.model.drive import SeriesMotorDrive
 from tractionpower.model.limits import Limit, system_voltages
@@ -88,7 +88,7 @@ def drive_curves(
     columns |= {"lowest_v": known.u_min2, "nominal_v": known.u_n, "inertia_kg": formation.inertia_kg}
     columns |= {"auxiliary_w": formation.auxiliary_w, "heating_s": formation.heating_w / known.u_n**2}
     row = np.array([tuple(columns.get(name, 0) for name in TRAIN.names or ())], TRAIN)
-    kinds = {"knots": KNOT, "pieces": PIECE, "stops": STOP, "limits": LINE_LIMIT}
+    kinds = {"knots": KNOT, "pieces": PIECE, "stops": STOP, "limits": LINE_LIMIT, "turns": TURN}
     tables = TrainTables(trains=row, **{name: np.zeros(0, kind) for name, kind in kinds.items()}, **pool_arrays(pools))
     speed = np.linspace(0.0, formation.max_mps, _SPEEDS)
     weight, brake = formation.mass_kg * GRAVITY, row[0]

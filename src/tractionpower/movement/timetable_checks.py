@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 from tractionpower.errors import Problem
 from tractionpower.model.base import format_time
 from tractionpower.model.scenario import Clock
+from tractionpower.model.services import DAY_S
 from tractionpower.model.timetable import Call, TrainRun
 from tractionpower.movement.compile import start_time
+from tractionpower.movement.declared import Declared
 from tractionpower.movement.telling import doubt, listed
-
-DAY_S = 86_400.0
 
 
 def check_times(path: str, run: TrainRun) -> Iterator[Problem]:
@@ -47,11 +47,13 @@ def _check_dwell(path: str, call: Call) -> Iterator[Problem]:
         yield doubt("short_dwell", f"{path}.departure", found, remedy=remedy)
 
 
-def check_clock(paths: Sequence[str], runs: Sequence[TrainRun], clock: Clock) -> list[Problem]:
-    """Return one warning for all runs that begin when the simulated time is over, and one for those that end before it."""
-    placed = list(zip(paths, runs, strict=True))
-    late = [(path, run) for path, run in placed if start_time(run) >= clock.end]
-    early = [(path, run) for path, run in placed if _is_early(run, clock)]
+def check_clock(items: Sequence[Declared], clock: Clock) -> list[Problem]:
+    """Return one warning for all that begins when the simulated time is over, and one for all that ends before it.
+
+    Of a service no run must be left. What the day before has left counts nowhere.
+    """
+    late = [(item, item.runs[0]) for item in items if item.runs and start_time(item.runs[0]) >= clock.end]
+    early = [(item, item.runs[-1]) for item in items if item.runs and all(_is_early(run, clock) for run in item.runs)]
     problems = []
     if late:
         found = f"the clock ends at {format_time(clock.end)}: the co-simulation (`run`) leaves it out, `journey` runs it"
@@ -76,10 +78,10 @@ def _is_early(run: TrainRun, clock: Clock) -> bool:
     return start < clock.start - 0.5 * DAY_S or max(times, default=clock.start) < clock.start
 
 
-def _never_begins(code: str, placed: Sequence[tuple[str, TrainRun]], why: str, remedy: str) -> Problem:
-    path, first = placed[0]
-    where = f"{path}.start.time" if first.start is not None else f"{path}.calls[0].departure"
+def _never_begins(code: str, placed: Sequence[tuple[Declared, TrainRun]], why: str, remedy: str) -> Problem:
+    item, first = placed[0]
+    where = item.at("start.time" if item.run.start is not None else "calls[0].departure")
     found = f"begins at {format_time(start_time(first))}, {why}"
     if len(placed) > 1:
-        found += f"; likewise {listed(sorted(run.id for _, run in placed[1:]))}"
+        found += f"; likewise {listed(sorted(each.run.id for each, _ in placed[1:]))}"
     return doubt(code, where, found, remedy=remedy)

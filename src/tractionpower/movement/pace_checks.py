@@ -1,0 +1,154 @@
+"""Is a timetable faster than its trains? Planned times held against those flat out, alone, at nominal voltage."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tractionpower.errors import Problem
+from tractionpower.kernels.journey import ARRIVED, run_journey
+from tractionpower.kernels.train_tables import POINT, TRAIN_ROW, new_train_state
+from tractionpower.model.base import format_time
+from tractionpower.model.scenario import Scenario
+from tractionpower.model.timetable import Call, Start, Timetable, TrainRun
+from tractionpower.movement.compile import AT_START_M, compile_trains, start_time
+from tractionpower.movement.declared import Declared
+from tractionpower.movement.telling import doubt
+
+TOLERANCE_S = 1.0
+"""Seconds that may be missing: times are whole seconds at best."""
+
+STEP_S = 1.0
+LONGEST_STEPS = 86_400
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A part of a run, from where it may not leave earlier to a call with a planned time.
+
+    Attributes
+    ----------
+    since, call
+        Numbers of the calls at its ends, -1 for the start of the run.
+    key
+        The planned time at its end, ``arrival`` or ``departure``.
+    planned_s, shortest_s
+        Planned and shortest time [s].
+    """
+
+    since: int
+    call: int
+    key: str
+    planned_s: float
+    shortest_s: float
+
+    @property
+    def missing_s(self) -> float:
+        """Seconds by which the plan is too short."""
+        return self.shortest_s - self.planned_s
+
+
+def check_pace(scenario: Scenario, items: Sequence[Declared]) -> list[Problem]:
+    """Return a warning for each train or service whose timetable is faster than it can run; `items` have no errors."""
+    timed = [item for item in items if len(list(_planned(item.run))) > 1]
+    if not timed:
+        return []
+    alike: dict[Any, list[Declared]] = {}
+    for item in timed:
+        alike.setdefault(_what_counts(item.run), []).append(item)
+    times = _shortest_times(scenario, [members[0].run for members in alike.values()])
+    found = {
+        item.path: problem
+        for members, passed in zip(alike.values(), times, strict=True)
+        if passed is not None
+        for item in members
+        for problem in _tell(item, list(sections(item.run, *passed)))
+    }
+    return [found[item.path] for item in timed if item.path in found]
+
+
+def _planned(run: TrainRun) -> Iterator[float]:
+    """Yield when a run starts, and the planned times of its calls but the first."""
+    yield start_time(run)
+    yield from (time for call in run.calls[1:] for time in (call.arrival, call.departure) if time is not None)
+
+
+def _what_counts(run: TrainRun) -> Any:
+    """Return all that the shortest running times of a run depend on."""
+    calls = tuple((call.station, call.stops) for call in run.calls)
+    speed = run.start.speed_kmh if run.start is not None else 0.0
+    own = (run.train, run.vehicles, run.category, run.end, run.max_current_a, run.max_power_kw)
+    return run.route, calls, speed, *own
+
+
+def _shortest_times(scenario: Scenario, runs: Sequence[TrainRun]) -> list[tuple[list[float], list[float]] | None]:
+    """Return for each run when it comes to its calls, flat out from 0 s on without any dwell [s], and where they are [m].
+
+    None for one that does not come to its end.
+    """
+    width = len(str(len(runs)))
+    bare = tuple(_without_times(run, f"{k:0{width}d}") for k, run in enumerate(runs))
+    alone = scenario.model_copy(update={"timetable": Timetable.model_construct(trains=bare), "day": None})
+    movement = compile_trains(alone)
+    state, tables = new_train_state(movement.tables), movement.tables
+    voltage, rows = np.array([(0.0, movement.voltages.u_n)], POINT), np.zeros(LONGEST_STEPS, TRAIN_ROW)
+    found: list[tuple[list[float], list[float]] | None] = []
+    for k, planned in enumerate(movement.runs):
+        _, end, _ = run_journey(tables, state, k, (0.0, STEP_S), voltage, rows)
+        first = int(tables.trains[k]["first_stop"])
+        arrived = state.arrived_s[first : first + len(planned.calls)].tolist()
+        found.append((arrived, [call.at_m for call in planned.calls]) if end == ARRIVED else None)
+    return found
+
+
+def _without_times(run: TrainRun, name: str) -> TrainRun:
+    speed = run.start.speed_kmh if run.start is not None else 0.0
+    calls = tuple(Call(station=call.station, stops=call.stops) for call in run.calls)
+    start = Start(time=0.0, speed_kmh=speed)
+    return run.model_copy(update={"id": name, "start": start, "calls": calls, "driving": None, "days": None})
+
+
+def sections(run: TrainRun, arrived_s: Sequence[float], at_m: Sequence[float]) -> Iterator[Section]:
+    """Yield the sections of a run between planned times.
+
+    Parameters
+    ----------
+    run
+        The run.
+    arrived_s, at_m
+        When it comes to its calls if it runs from 0 s on and nowhere waits [s], and where they are on the route [m].
+    """
+    since, left_s, passed_s, dwells_s = -1, start_time(run), 0.0, 0.0
+    for k, (call, arrived, at) in enumerate(zip(run.calls, arrived_s, at_m, strict=True)):
+        dwell = call.min_dwell_s if call.stops and at > AT_START_M else 0.0
+        key = "arrival" if call.arrival is not None else "departure"
+        due = call.arrival if call.arrival is not None or call.departure is None else call.departure - dwell
+        if due is not None and at > AT_START_M:
+            yield Section(since, k, key, due - left_s, arrived - passed_s + dwells_s)
+        leaves = call.departure if call.departure is not None else None if due is None else due + dwell
+        if leaves is None or not call.stops:  # it may pass earlier than planned
+            dwells_s += dwell
+        else:
+            since, left_s, passed_s, dwells_s = k, leaves, arrived, 0.0
+
+
+def _tell(item: Declared, parts: Sequence[Section]) -> Iterator[Problem]:
+    short: dict[int, Section] = {}
+    for part in parts:
+        if part.missing_s > max(TOLERANCE_S, short[part.since].missing_s if part.since in short else 0.0):
+            short[part.since] = part
+    if not short:
+        return
+    worst, calls = max(short.values(), key=lambda part: part.missing_s), item.run.calls
+    ends = "the start" if worst.since < 0 else calls[worst.since].station, calls[worst.call].station
+    found = (
+        f"faster than the train can: from {ends[0]} to {ends[1]} it takes {format_time(round(worst.shortest_s, 1))} flat out at"
+        f" nominal voltage, planned are {format_time(max(worst.planned_s, 0.0))}: {worst.missing_s:.1f} s are missing"
+    )
+    if len(short) > 1:
+        found += f", {sum(part.missing_s for part in short.values()):.1f} s on {len(short)} sections in all"
+    remedy = "give it more time, a stronger train or fewer stops; it will be late"
+    yield doubt("faster_than_train", f"{item.path}.calls[{worst.call}].{worst.key}", found, remedy=remedy)
