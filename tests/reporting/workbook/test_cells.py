@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from openpyxl import Workbook
 
-from tractionpower.reporting.workbook.cells import LONGEST, Styles, clean, plain, put, shorten
+from tractionpower.reporting.workbook.cells import LONGEST, Styles, clean, days, plain, put, shorten
 
 
 @pytest.fixture
@@ -55,3 +55,10 @@ def test_styles_carry_the_format(sheet):
     assert put(sheet, 1, 1, 0.25, styles["time"]).number_format == "[hh]:mm:ss"
     assert put(sheet, 1, 2, 0.25, styles["0.0"]).number_format == "0.0"
     assert put(sheet, 1, 3, 0.25, styles["sum 0.00"]).font.b
+
+
+def test_times_before_midnight_are_texts():
+    assert days(-600.0) == "-00:10:00"
+    assert days(43_200.0) == 0.5
+    assert days(None) is None
+    assert np.isnan(days(np.nan))

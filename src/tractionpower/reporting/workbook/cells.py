@@ -12,6 +12,8 @@ import numpy as np
 from openpyxl.cell.cell import Cell
 from openpyxl.styles import Alignment, Border, Font, PatternFill, Side
 
+from tractionpower.model.base import format_time
+
 BLUE, INK, GREY, PALE = "1F4E79", "333333", "777777", "D9D9D9"
 GREEN_FILL, RED_FILL, AMBER_FILL, PLAIN_FILL = "C6EFCE", "FFC7CE", "FFEB9C", "F2F2F2"
 
@@ -120,8 +122,13 @@ def shorten(text: str, most: int) -> str:
 
 
 def days(seconds: Any) -> Any:
-    """Return seconds as the days that Excel counts times in; None and NaN stay."""
-    return None if seconds is None else seconds / SECONDS_PER_DAY
+    """Return seconds as the days that Excel counts times in; None and NaN stay.
+
+    Excel shows no times before midnight, as trains of the day before have them: they become texts.
+    """
+    if seconds is None:
+        return None
+    return format_time(float(seconds)) if seconds < 0.0 else seconds / SECONDS_PER_DAY
 
 
 def fill(colour: str) -> Any:
