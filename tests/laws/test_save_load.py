@@ -38,7 +38,7 @@ from tractionpower.model.supply import (
     Wire,
 )
 from tractionpower.model.switchgear import Feeder
-from tractionpower.model.timetable import Call, Leg, Start, Timetable, TrainRun
+from tractionpower.model.timetable import Call, Join, Leg, Rotation, Service, Split, Start, Timetable, TrainRun
 from tractionpower.model.vehicle import Adhesion, Auxiliaries, Brake, Part, Resistance, Train, Vehicle
 from tractionpower.results.results import Results
 from tractionpower.results.store import RunWriter
@@ -116,6 +116,17 @@ SUBSTATIONS = st.builds(
     dissipative_resistance_ohm=st.none() | reals(0, 10),
     grid_voltage_pu=reals(0.5, 1.5),
     tracks=TRACKS,
+)
+
+
+DAYS = st.none() | st.lists(st.sampled_from(["mon", "tue", "sat", "sun"]), min_size=1, max_size=3).map(tuple)
+PORTIONS = st.lists(NAMES, min_size=2, max_size=3).map(tuple)
+TURNS = st.fixed_dictionaries(
+    {
+        "rotations": listed(st.builds(Rotation, id=st.none() | NAMES, runs=PORTIONS, turn_round_s=reals(0, 1e4))),
+        "joins": listed(st.builds(Join, portions=PORTIONS, into=NAMES, coupling_s=reals(0, 1e4))),
+        "splits": listed(st.builds(Split, run=NAMES, portions=PORTIONS, uncoupling_s=reals(0, 1e4))),
+    }
 )
 
 
@@ -382,10 +393,25 @@ def rolling_stock(draw: st.DrawFn) -> dict[str, object]:
         start=st.builds(Start, time=TIMES, speed_kmh=reals(0, 300)),
         end=st.sampled_from([None, "leave", "stop", "stay"]),
         calls=listed(CALLS),
+        days=DAYS,
     )
-    timetable = Timetable(trains=draw(listed(runs)))
-    used = [trains[run.train] for run in timetable.trains if run.train is not None]
-    of_vehicles = {part.id for owner in (*used, *timetable.trains) for part in owner.vehicles}
+    services = st.builds(
+        lambda what, ends, **more: Service(**what, first=ends[0], last=ends[1], **more),
+        what,
+        st.tuples(TIMES, TIMES).map(sorted),
+        id=NAMES,
+        headway_s=reals(1.0, 1e5),
+        route=st.lists(LEGS, min_size=1, max_size=3).map(tuple),
+        start_speed_kmh=reals(0, 300),
+        calls=listed(CALLS),
+        days=DAYS,
+    )
+    timetable = Timetable(
+        trains=draw(listed(runs)), services=draw(listed(services)), carry_over=draw(st.booleans()), **draw(TURNS)
+    )
+    owners = (*timetable.trains, *timetable.services)
+    used = [trains[run.train] for run in owners if run.train is not None]
+    of_vehicles = {part.id for owner in (*used, *owners) for part in owner.vehicles}
     return {
         "timetable": timetable,
         "trains": tuple(trains[name] for name in sorted({train.id for train in used})),
