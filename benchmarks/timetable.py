@@ -81,8 +81,8 @@ def describe(rows: list[Row]) -> str:
         [what, f"{times.least:.2f}", f"{times.median:.2f}", "" if limit is None else f"{limit:g}: {goal(times.least, limit)}"]
         for what, times, limit in rows
     ]
-    return (
-        f"### Timetables\n\n{table(headings, cells)}\n\nPlans with the least energy: `vectron-9-coaches` on 60 km of `cmk`, from"
-        " rest to rest, kernels compiled; from the declared study to the tables, the search for the time included. Commands are whole"
-        " processes."
+    told = (
+        "Plans with the least energy: `vectron-9-coaches` on 60 km of `cmk`, from rest to rest, kernels compiled; from the declared"
+        " study to the tables, the search for the time included. Commands are whole processes."
     )
+    return f"### Timetables\n\n{table(headings, cells)}\n\n{told}"
