@@ -82,7 +82,7 @@ def describe(rows: list[Row]) -> str:
         for what, times, limit in rows
     ]
     told = (
-        "Plans with the least energy: `vectron-9-coaches` on 60 km of `cmk`, from rest to rest, kernels compiled; from the declared"
-        " study to the tables, the search for the time included. Commands are whole processes."
+        "Plans with the least energy: `vectron-9-coaches` on 60 km of `cmk`, from rest to rest, kernels compiled; from the"
+        " declared study to the tables, the search for the time included. Commands are whole processes."
     )
     return f"### Timetables\n\n{table(headings, cells)}\n\n{told}"
