@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tractionpower.io.scenario_files import save_scenario as save
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.results import Results
+    from tractionpower.studies.feasibility.study import feasibility
     from tractionpower.studies.journeys import journeys
 
 _HOMES = {
@@ -29,6 +30,7 @@ _HOMES = {
     "UsageError": ("errors", "UsageError"),
     "change": ("io.conductor_files", "change"),
     "check": ("cosimulation.check", "check_scenario"),
+    "feasibility": ("studies.feasibility.study", "feasibility"),
     "journeys": ("studies.journeys", "journeys"),
     "load": ("io.scenario_files", "load"),
     "save": ("io.scenario_files", "save_scenario"),
@@ -45,6 +47,7 @@ __all__ = [
     "UsageError",
     "change",
     "check",
+    "feasibility",
     "journeys",
     "load",
     "save",

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import pyarrow as pa
 
 from tractionpower.cosimulation.check import check_scenario, step_count
-from tractionpower.cosimulation.recorder import Recorder
+from tractionpower.cosimulation.recorder import Recorder, Watch
 from tractionpower.cosimulation.start import start_state
 from tractionpower.cosimulation.switching import Switchboard
 from tractionpower.cosimulation.tables import compile_scenario, coupling_voltage
@@ -74,6 +74,8 @@ class Run:
         Takes the rows.
     study
         Identifier of the study, for ``run.json``.
+    watch
+        Called with the rows of trains, records of `TRAIN_ROW`, in every step, whatever is written.
 
     Raises
     ------
@@ -81,7 +83,7 @@ class Run:
         If the scenario has errors; all of them are told.
     """
 
-    def __init__(self, scenario: Scenario, writer: Writer, study: str = "") -> None:
+    def __init__(self, scenario: Scenario, writer: Writer, study: str = "", watch: Watch | None = None) -> None:
         started = time.perf_counter()
         problems = check_scenario(scenario)
         raise_errors(problems)
@@ -91,7 +93,7 @@ class Run:
         self.steps = step_count(scenario.clock)
         state = start_state(self.compiled)
         self.board = Switchboard(scenario, self.compiled, state)
-        self.recorder = Recorder(scenario, self.compiled, state, writer)
+        self.recorder = Recorder(scenario, self.compiled, state, writer, watch)
         self._closed = False
         self.compile_seconds = time.perf_counter() - started
         self.wall_seconds = 0.0

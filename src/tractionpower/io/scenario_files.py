@@ -37,7 +37,9 @@ Model = TypeVar("Model", bound=BaseModel)
 LONG_PROFILE = 50
 """Rows of a load's profile beyond which it is saved as a CSV file of its own."""
 
-_OF_THE_STUDY = ("name", "clock", "day", "coupling", "coupling_voltage_v", "seed", "coast_without_voltage_s", "output")
+_OF_THE_STUDY = (
+    "name", "clock", "day", "coupling", "coupling_voltage_v", "seed", "coast_without_voltage_s", "output", "feasibility",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from tractionpower.model.base import Count, Declaration, Format, Real, Text, TimeOfDay
 from tractionpower.model.conductors import Conductor, used_conductors
+from tractionpower.model.feasibility import Feasibility
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.quantity import field
@@ -78,6 +79,7 @@ class StudyFile(Declaration):
         default=120.0,
     )
     output: Output = Field(default=Output(), description="What a run writes.")
+    feasibility: Feasibility = Field(default=Feasibility(), description="How the timetable is judged.")
 
 
 class Scenario(Declaration):
@@ -102,6 +104,7 @@ class Scenario(Declaration):
     conductors: tuple[Conductor, ...] = ()
     coast_without_voltage_s: Real = 120.0
     output: Output = Output()
+    feasibility: Feasibility = Feasibility()
 
     @model_validator(mode="after")
     def _keeps_what_it_uses(self) -> Scenario:

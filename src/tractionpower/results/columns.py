@@ -27,6 +27,25 @@ def _column(name: str, meaning: str, kind: str = "f4") -> Column:
 TIME = _column("time_s", "Start of the step, seconds after midnight of the study's day.", "f8")
 VOLTAGE = _column("voltage_v", "Mean voltage of the step between contact line and rail.")
 
+DELAY_PARTS = {
+    "knock_on": "Part of it that the train brought along from the timed call before, or from its start.",
+    "timetable": "Part of it since the timetable gives less than the shortest running time.",
+    "current_limit": "Part of it by train current limits of line and run.",
+    "voltage": "Part of it by voltage below the nominal one.",
+    "dwell": "Part of it added at a stop.",
+    "driving": "Part of it since the train was not driven flat out.",
+}
+"""Parts of a delay, which add up to it."""
+
+ORIGIN_PARTS = {
+    "timetable": "to a timetable shorter than the train can run, or a start later than planned.",
+    "current_limit": "to train current limits.",
+    "voltage": "to low voltage.",
+    "dwell": "to stops.",
+    "driving": "to driving that is not flat out.",
+}
+"""Where the seconds of a delay first arose; they add up to it."""
+
 TABLES: dict[str, tuple[Column, ...]] = {
     "trains": (
         TIME,
@@ -145,6 +164,47 @@ TABLES: dict[str, tuple[Column, ...]] = {
         _column("device", "Identifier of the earthing or voltage-limiting device.", "text"),
         _column("potential_v", "Mean potential there, of rails or busbar, against remote earth; empty where not recorded."),
         _column("current_a", "Current into earth; negative comes out of it."),
+    ),
+    "delays": (
+        _column("train", "Identifier of the train's run.", "text"),
+        _column("station", "Identifier of the station.", "text"),
+        _column("kind", "arrival, departure or pass.", "text"),
+        _column("planned_s", "Planned time, seconds after midnight.", "f8"),
+        _column("actual_s", "Computed time, seconds after midnight; empty where the train did not get there.", "f8"),
+        _column("delay_s", "How late it is: computed less planned time, 0 if it is early; empty where it did not get there."),
+        *(_column(f"{part}_s", meaning) for part, meaning in DELAY_PARTS.items()),
+        _column("cause", "Largest of these parts; empty within the tolerance; not_reached where it should have come.", "text"),
+        *(
+            _column(f"origin_{part}_s", f"Of the delay, knock-on followed back to where it first arose: {ORIGIN_PARTS[part]}")
+            for part in ORIGIN_PARTS
+        ),
+    ),
+    "sections": (
+        _column("train", "Identifier of the train's run.", "text"),
+        _column("from_station", "Station at which the section begins; empty: the start of the run.", "text"),
+        _column("to_station", "Station at which it ends.", "text"),
+        _column("from_km", "Where it begins.", "f8"),
+        _column("to_km", "Where it ends.", "f8"),
+        _column("planned_s", "Planned running time between two timed calls, the shortest dwells in between taken off."),
+        _column("shortest_s", "Running time alone at nominal voltage, flat out, without train current limits."),
+        _column("limited_s", "The same with the train current limits of line and run."),
+        _column("recorded_s", "The same with these limits on the voltages that the run with the network recorded."),
+        _column("actual_s", "Running time with the network; empty where the train did not get there."),
+        _column("reserve_s", "planned_s less shortest_s."),
+        _column("reserve_left_s", "planned_s less recorded_s: what limits and voltage leave of the reserve."),
+        _column("lost_voltage_s", "recorded_s less limited_s: seconds lost to low voltage; negative are gained."),
+        _column("lost_current_s", "limited_s less shortest_s: seconds lost to train current limits."),
+        _column("worst_track", "Track of the kilometre in which most seconds are lost to low voltage.", "text"),
+        _column("worst_km", "Middle of that kilometre; empty where none is lost.", "f8"),
+        _column("area", "Substation that is the nearest to it of those that feed there.", "text"),
+        _column("lowest_voltage_v", "Lowest voltage at the pantograph, mean of a step."),
+    ),
+    "lost_time": (
+        _column("train", "Identifier of the train's run.", "text"),
+        _column("track", "Track.", "text"),
+        _column("km", "Middle of a kilometre.", "f8"),
+        _column("area", "Substation that is the nearest to it of those that feed there.", "text"),
+        _column("lost_s", "Seconds lost to low voltage in it; negative are gained."),
     ),
     "events": (
         TIME,

@@ -1,0 +1,92 @@
+"""What the run with the network tells of each train: its way, speed and voltage over time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.kernels.train_tables import HOLDING, POINT
+
+Floats = NDArray[np.float64]
+
+TRACE = np.dtype(
+    [
+        ("train", "i4"), ("time_s", "f8"), ("s_m", "f8"), ("voltage_v", "f8"), ("on_line_s", "f8"), ("held", "?"),
+    ]
+)  # fmt: skip
+"""A step of a train: what of `TRAIN_ROW` is kept; held: it stands on its way since effort or voltage lack."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """The steps of one train, by time.
+
+    Attributes
+    ----------
+    rows
+        Records of `TRACE`.
+    step_s
+        Length of a step [s].
+    """
+
+    rows: NDArray[np.void]
+    step_s: float
+
+    def entered_s(self) -> float:
+        """Return when it came onto the line [s]; NaN if it never did, or before the clock."""
+        if not len(self.rows):
+            return np.nan
+        return float(self.rows["time_s"][0] + self.step_s - min(self.rows["on_line_s"][0], self.step_s))
+
+    def voltages(self, before_v: float) -> NDArray[np.void]:
+        """Return the voltage over the distance of the front, records of `POINT`; `before_v` [V] where it ran before the clock.
+
+        Of a place where it stood the last step counts, in which it left.
+        """
+        rows = self.rows
+        if not len(rows):
+            return np.array([(0.0, before_v)], POINT)
+        last = np.diff(rows["s_m"], append=np.inf) > 0.0
+        at, volts = rows["s_m"][last], rows["voltage_v"][last]
+        points = np.zeros(len(at), POINT)
+        points["x"], points["y"] = at, volts
+        if at[0] <= 0.0:
+            return points
+        first = np.array([(0.0, before_v), (np.nextafter(at[0], 0.0), before_v)], POINT)
+        return np.concatenate((first, points))
+
+    def held_until(self, time_s: float) -> float:
+        """Return for how long it had stood on its way by a time [s]."""
+        return self.step_s * float(np.count_nonzero(self.rows["held"] & (self.rows["time_s"] < time_s)))
+
+    def lowest_v(self, from_s: float, until_s: float) -> float:
+        """Return the lowest voltage of the steps between two times [s]; NaN without one [V]."""
+        time_s = self.rows["time_s"]
+        first, end = np.searchsorted(time_s, from_s - self.step_s, side="right"), np.searchsorted(time_s, until_s)
+        volts = self.rows["voltage_v"][first:end]
+        return float(volts.min()) if len(volts) else np.nan
+
+
+class Recording:
+    """Keeps what is needed of the rows of trains as they come; a `Watch` of the run."""
+
+    def __init__(self) -> None:
+        self._parts: list[NDArray[np.void]] = []
+
+    def __call__(self, rows: NDArray[np.void]) -> None:
+        """Take rows of `TRAIN_ROW`."""
+        kept = np.empty(len(rows), TRACE)
+        for name in ("train", "time_s", "s_m", "voltage_v", "on_line_s"):
+            kept[name] = rows[name]
+        kept["held"] = (rows["phase"] >= HOLDING) & (rows["moved_m"] == 0.0) & (rows["v_mps"] == 0.0)
+        self._parts.append(kept)
+
+    def traces(self, trains: int, step_s: float) -> list[Trace]:
+        """Return the traces of all trains, by their number."""
+        rows = np.concatenate([np.zeros(0, TRACE), *self._parts])
+        rows = rows[np.argsort(rows["train"], kind="stable")]
+        ends = np.searchsorted(rows["train"], np.arange(trains + 1))
+        return [Trace(rows[a:b], step_s) for a, b in pairwise(ends.tolist())]

@@ -1,0 +1,283 @@
+"""Is the timetable feasible on this supply? Every train alone and with the network, and what the difference is due to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from tractionpower.cosimulation.calls import call_rows
+from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
+from tractionpower.errors import Problem, UsageError
+from tractionpower.kernels.train_tables import GONE, OUTSIDE, STAYING
+from tractionpower.model.scenario import Output, Scenario
+from tractionpower.movement.journey import calls_of
+from tractionpower.results.results import Results
+from tractionpower.results.store import MemoryWriter, RunWriter
+from tractionpower.studies.feasibility.alone import AloneTimes, run_all_alone
+from tractionpower.studies.feasibility.areas import Areas
+from tractionpower.studies.feasibility.chain import Chain, TrainFacts, chain_of
+from tractionpower.studies.feasibility.judgement import NAN, Judgement
+from tractionpower.studies.feasibility.lost import loss_profile
+from tractionpower.studies.feasibility.recording import Recording, Trace
+from tractionpower.studies.feasibility.tables import feasibility_notes, key_figures, write_tables
+from tractionpower.studies.feasibility.verdicts import Judged, Span, judge_train
+
+USEFUL = ("mean_useful_voltage_current_weighted_v", "mean_useful_voltage_time_mean_v")
+
+STUCK_S = 60.0
+"""A train that has held itself for so long at the end of the run is stuck [s]."""
+
+
+class _Nowhere:
+    """A writer that keeps nothing."""
+
+    def append(self, table: str, rows: pa.Table) -> None:
+        """Take rows and forget them."""
+
+
+def judge(
+    scenario: Scenario,
+    writer: Writer | None = None,
+    *,
+    study: str = "",
+    tolerance_s: float | None = None,
+    progress: Progress | None = None,
+) -> Judgement:
+    """Run a timetable with the network and each train alone, split the delays, and judge.
+
+    Parameters
+    ----------
+    scenario
+        What to judge.
+    writer
+        Takes the tables of the run, and ``delays``, ``sections`` and ``lost_time``; left out: only what is returned is kept.
+    study
+        Identifier of the study, for ``run.json``.
+    tolerance_s
+        A train is late if it is later than this [s]; left out: as the study says.
+    progress
+        Called now and then with the steps done and the steps in all.
+
+    Raises
+    ------
+    InputError
+        If the scenario has errors; all of them are told.
+    UsageError
+        If it has no trains, or the tolerance is not allowed.
+    """
+    tolerance = scenario.feasibility.tolerance_s if tolerance_s is None else float(tolerance_s)
+    _refuse(scenario, tolerance)
+    if writer is None:
+        writer, scenario_run = _Nowhere(), scenario.model_copy(update={"output": Output(tables=("calls",))})
+    else:
+        scenario_run = scenario
+    recording = Recording()
+    run = Run(scenario_run, writer, study, recording)
+    outcome = run.execute(progress)
+    return judge_outcome(scenario, run, (outcome, recording), writer, tolerance)
+
+
+def judge_outcome(scenario: Scenario, run: Run, done: tuple[Outcome, Recording], writer: Writer, tolerance_s: float) -> Judgement:
+    """Judge a run that has been executed, with the recording of its trains."""
+    outcome, recording = done
+    facts = _facts(scenario, run, recording)
+    chains = _chains(scenario, facts)
+    clock = scenario.clock
+    span = Span(clock.start + (clock.warm_up or 0.0), float(outcome.run["end_s"]), tolerance_s)
+    areas, useful = Areas(scenario), _useful_voltages(outcome)
+    judged = [
+        judge_train(train, chains[train.name], loss_profile(train, areas, span.from_s), span, useful.get(train.name, (NAN, NAN)))
+        for train in facts
+    ]
+    return _put_together(outcome, judged, writer, tolerance_s, _warnings(facts))
+
+
+def _refuse(scenario: Scenario, tolerance_s: float) -> None:
+    if not scenario.runs:
+        remedy = "name a timetable with trains in study.yaml; `tractionpower run` computes the network alone"
+        raise UsageError(f"the study has no trains; {remedy}")
+    if not (np.isfinite(tolerance_s) and tolerance_s >= 0.0):
+        raise UsageError(f"tolerance {tolerance_s:g} s: allowed are finite numbers from 0 s")
+
+
+def _put_together(
+    outcome: Outcome, judged: Sequence[Judged], writer: Writer, tolerance_s: float, warnings: tuple[Problem, ...]
+) -> Judgement:
+    trains = tuple(item.verdict for item in judged)
+    delays = tuple(row for item in judged for row in item.delays)
+    sections = tuple(row for item in judged for row in item.sections)
+    lost = tuple(row for item in judged for row in item.lost)
+    write_tables(writer, delays, sections, lost)
+    reserve = min((train.reserve_left_s for train in trains if np.isfinite(train.reserve_left_s)), default=NAN)
+    holds = all(train.holds for train in trains)
+    verdict: Any = "feasible" if holds else "infeasible"
+    overall = {"verdict": verdict, "reserve_left_s": reserve, "tolerance_s": tolerance_s}
+    figures = [*outcome.key_figures, *key_figures(trains, lost, reserve)]
+    said = {**outcome.run, "feasibility": feasibility_notes(trains, lost, overall)}
+    outcome = replace(outcome, run=said, key_figures=figures, warnings=(*outcome.warnings, *warnings))
+    return Judgement(outcome, trains, delays, sections, lost, verdict, reserve, tolerance_s, outcome.warnings)
+
+
+def _facts(scenario: Scenario, run: Run, recording: Recording) -> list[TrainFacts]:
+    """Return what the run, and those alone, tell of every train."""
+    movement, state = run.compiled.movement, run.state.trains
+    table = movement.tables.trains
+    traces = recording.traces(len(movement.runs), scenario.clock.step_s)
+    entered = np.array([_entered(scenario, k, run, trace) for k, trace in enumerate(traces)])
+    alone = run_all_alone(scenario, entered, state.left_s, traces)
+    return [
+        TrainFacts(
+            planned=planned,
+            calls=calls_of(planned, state, int(table[k]["first_stop"])),
+            entered_s=float(entered[k]),
+            reached_m=float(state.movers[k]["s_m"]),
+            is_finished=bool(state.movers[k]["status"] in (GONE, STAYING)),
+            is_stuck=bool(state.movers[k]["held_s"] >= STUCK_S),
+            trace=traces[k],
+            alone=alone[k],
+            has_plan=bool(table[k]["plans"] or table[k]["caps"]),
+        )
+        for k, planned in enumerate(movement.runs)
+    ]
+
+
+def _entered(scenario: Scenario, k: int, run: Run, trace: Trace) -> float:
+    """Return when a train came onto the line [s], NaN if it has not; before the clock it came as planned."""
+    planned_s = run.compiled.movement.runs[k].start_s
+    if run.state.trains.movers[k]["status"] == OUTSIDE:
+        return NAN
+    if planned_s < scenario.clock.start or not len(trace.rows):
+        return planned_s
+    seen = trace.entered_s()
+    return planned_s if seen <= planned_s + 1e-6 else seen
+
+
+def _chains(scenario: Scenario, facts: Sequence[TrainFacts]) -> dict[str, Chain]:
+    """Return the chains of all trains by name; a run that another one turns into hands its delay on."""
+    before = dict(_turns(scenario))
+    known, chains = {train.name: train for train in facts}, dict[str, Chain]()
+
+    def find(name: str) -> Chain:
+        if name not in chains:
+            earlier = before.get(name)
+            origins: Mapping[str, float] = find(earlier).end.origins if earlier in known and earlier is not None else {}
+            chains[name] = chain_of(known[name], origins)
+        return chains[name]
+
+    return {train.name: find(train.name) for train in facts}
+
+
+def _turns(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    """Yield each run that comes from another one, and which."""
+    timetable = scenario.timetable
+    for rotation in timetable.rotations:
+        yield from zip(rotation.runs[1:], rotation.runs[:-1], strict=True)
+    for split in timetable.splits:
+        yield from ((portion, split.run) for portion in split.portions)
+    yield from ((join.into, join.portions[0]) for join in timetable.joins)
+
+
+def _useful_voltages(outcome: Outcome) -> dict[str, tuple[float, float]]:
+    """Return the mean useful voltage of every train by both definitions [V]."""
+    found: dict[str, dict[str, float]] = {}
+    for figure in outcome.key_figures:
+        if figure["name"] in USEFUL and figure["place"].startswith("train "):
+            found.setdefault(figure["place"].removeprefix("train "), {})[figure["name"]] = figure["value"]
+    return {train: (values.get(USEFUL[0], NAN), values.get(USEFUL[1], NAN)) for train, values in found.items()}
+
+
+def _warnings(facts: Sequence[TrainFacts]) -> tuple[Problem, ...]:
+    return tuple(_stuck_alone(train) for train in facts if not _arrives(train.alone, train))
+
+
+def _arrives(alone: AloneTimes, train: TrainFacts) -> bool:
+    return bool(alone.limited.at_m[-1] >= min(train.reached_m, train.planned.route_m) - 1.0)
+
+
+def _stuck_alone(train: TrainFacts) -> Problem:
+    track, km = train.planned.path.place(float(train.alone.limited.at_m[-1]))
+    found = f"train {train.name} alone at nominal voltage does not get beyond km {km:.1f} of track {track}"
+    remedy = "correct its effort or current limits; what it lost to low voltage is not known from there on"
+    return Problem("stuck_alone", f"timetable.trains[{train.name}]", found, "a train that reaches its end", remedy, "warning")
+
+
+def lateness(scenario: Scenario) -> dict[str, float]:
+    """Return the greatest lateness of each train over its timed calls in the run with the network [s].
+
+    A train that has not come to a call that is due counts with the time until the end of the run, one that is stuck as
+    infinitely late. Without a timed call it is never late. The time that counts is that of `judge`.
+
+    Raises
+    ------
+    InputError
+        If the scenario has errors; all of them are told.
+    """
+    run = Run(scenario.model_copy(update={"output": Output(tables=("calls",))}), _Nowhere())
+    outcome = run.execute()
+    movement, state = run.compiled.movement, run.state.trains
+    from_s, until_s = scenario.clock.start + (scenario.clock.warm_up or 0.0), float(outcome.run["end_s"])
+    worst: dict[str, float] = {}
+    for k, planned in enumerate(movement.runs):
+        calls = calls_of(planned, state, int(movement.tables.trains[k]["first_stop"]))
+        late = [0.0]
+        for row in call_rows(planned.run.id, calls, planned.route_m):
+            if np.isfinite(row.planned_s) and not (row.actual_s < from_s - 1e-9):
+                late.append(row.late_s if np.isfinite(row.actual_s) else max(0.0, until_s - row.planned_s))
+        mover = state.movers[k]
+        stuck = mover["held_s"] >= STUCK_S and mover["status"] not in (GONE, STAYING)
+        worst[planned.run.id] = float("inf") if stuck else max(late)
+    return worst
+
+
+def feasibility(
+    scenario: Scenario,
+    folder: str | Path | None = None,
+    *,
+    tolerance_s: float | None = None,
+    force: bool = False,
+    progress: Progress | None = None,
+) -> Results:
+    """Judge whether a timetable is feasible on its supply, and return the results of the run with the verdict.
+
+    ``results.run["feasibility"]`` has the verdict, tables ``delays``, ``sections`` and ``lost_time`` what it stands on.
+
+    Parameters
+    ----------
+    scenario
+        What to judge.
+    folder
+        Where to write the results; left out, they stay in memory.
+    tolerance_s
+        A train is late if it is later than this [s]; left out: as the study says.
+    force
+        Write even where results of another study are.
+    progress
+        Called now and then with the steps done and the steps in all.
+
+    Raises
+    ------
+    InputError
+        If the scenario has errors; all of them are told.
+    UsageError
+        If it has no trains, or the tolerance is not allowed.
+    OutputError
+        If the results cannot be written.
+    """
+    how: dict[str, Any] = {"study": scenario.name, "tolerance_s": tolerance_s, "progress": progress}
+    if folder is None:
+        memory = MemoryWriter()
+        outcome = judge(scenario, memory, **how).outcome
+        return Results(outcome.run, outcome.key_figures, memory.tables(), scenario)
+    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, force=force, scenario=scenario)
+    try:
+        outcome = judge(scenario, writer, **how).outcome
+    except BaseException:
+        writer.discard()
+        raise
+    writer.finish(outcome.run, outcome.key_figures)
+    return Results.open(folder)
