@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tractionpower.model.line import Connection, Track
 from tractionpower.model.scenario import Scenario
 
@@ -50,10 +47,6 @@ class Areas:
         if key not in self._cache:
             self._cache[key] = self._nearest(track, km)[1] if self._fed.get(track) else ""
         return self._cache[key]
-
-    def areas(self, track: str, km: NDArray[np.float64]) -> list[str]:
-        """Return the areas of places on one track."""
-        return [self.area(track, float(place)) for place in km]
 
 
 def _feeds(tracks: tuple[str, ...] | None, km: float, track: Track) -> bool:

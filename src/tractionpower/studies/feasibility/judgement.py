@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final, Literal
 
 from tractionpower.cosimulation.run import Outcome
 from tractionpower.errors import Problem
 
 NAN = float("nan")
 
-FEASIBLE, INFEASIBLE, NOT_FINISHED, NOT_JUDGED = "feasible", "infeasible", "not finished", "not judged"
-"""Verdicts on trains; not judged: nothing of its run lies within the time that counts."""
-
 Verdict = Literal["feasible", "infeasible", "not finished", "not judged"]
+
+FEASIBLE: Final = "feasible"
+INFEASIBLE: Final = "infeasible"
+NOT_FINISHED: Final = "not finished"
+NOT_JUDGED: Final = "not judged"
+"""Verdicts on trains; not judged: nothing of its run lies within the time that counts."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,7 +48,7 @@ class LossProfile:
     area: list[str]
 
     def within(self, from_m: float, to_m: float) -> LossProfile:
-        """Return what lies between two places on the way [m]; a piece belongs to where its middle lies."""
+        """Return what lies between two calls, by their places on the way [m]."""
         middle = 0.5 * (self.from_m + self.to_m)
         return self._those(np.flatnonzero((middle >= from_m) & (middle < to_m)))
 
@@ -94,6 +94,9 @@ def loss_profile(facts: TrainFacts, areas: Areas, from_s: float) -> LossProfile:
     rows = facts.trace.rows
     counted = rows[rows["time_s"] >= from_s - 1e-9]
     from_m, to_m = (float(counted["s_m"][0]) if len(counted) else facts.reached_m), facts.reached_m
+    if not to_m > from_m:
+        nothing = np.zeros(0)
+        return LossProfile(nothing, nothing, nothing, [], nothing, [])
     path = facts.planned.path
     marks = [call.at_m for call in facts.calls] + [leg.start_m for leg in path.legs]
     count = max(2, int(np.ceil((to_m - from_m) / SAMPLE_M)) + 1)
@@ -105,11 +108,21 @@ def loss_profile(facts: TrainFacts, areas: Areas, from_s: float) -> LossProfile:
     if len(held) and len(lost):
         piece = np.clip(np.searchsorted(places, held["s_m"], side="right") - 1, 0, len(lost) - 1)
         np.add.at(lost, piece, facts.trace.step_s)
+    return _by_kilometre(facts, areas, places, lost)
+
+
+def _by_kilometre(facts: TrainFacts, areas: Areas, places: Floats, lost: Floats) -> LossProfile:
+    """Sum up what is lost between `places` [m] over the kilometres of the tracks, cut at calls."""
+    path = facts.planned.path
     leg, km = path.places(0.5 * (places[:-1] + places[1:]))
-    track = [path.legs[number].axis.track for number in leg]
-    middle = (np.floor(km / BIN_KM) + 0.5) * BIN_KM
-    area = [areas.area(name, float(place)) for name, place in zip(track, middle, strict=True)]
-    return LossProfile(places[:-1], places[1:], lost, track, middle, area)
+    number = np.floor(km / BIN_KM)
+    call = np.searchsorted([call.at_m for call in facts.calls], places[:-1], side="right")
+    changes = np.diff(leg, prepend=-1) != 0
+    first = np.flatnonzero(changes | (np.diff(number, prepend=-np.inf) != 0.0) | (np.diff(call, prepend=-1) != 0))
+    track, middle = [path.legs[k].axis.track for k in leg[first]], (number[first] + 0.5) * BIN_KM
+    area = [areas.area(name, place) for name, place in zip(track, middle.tolist(), strict=True)]
+    to_m = np.append(places[first[1:]], places[-1])
+    return LossProfile(places[first], to_m, np.add.reduceat(lost, first), track, middle, area)
 
 
 def lost_times(train: str, profile: LossProfile) -> Iterable[LostTime]:

@@ -94,7 +94,7 @@ def judge_outcome(scenario: Scenario, run: Run, done: tuple[Outcome, Recording],
         judge_train(train, chains[train.name], loss_profile(train, areas, span.from_s), span, useful.get(train.name, (NAN, NAN)))
         for train in facts
     ]
-    return _put_together(outcome, judged, writer, tolerance_s, _warnings(facts))
+    return _put_together(scenario, (outcome, judged), writer, tolerance_s, _warnings(facts))
 
 
 def _refuse(scenario: Scenario, tolerance_s: float) -> None:
@@ -106,8 +106,9 @@ def _refuse(scenario: Scenario, tolerance_s: float) -> None:
 
 
 def _put_together(
-    outcome: Outcome, judged: Sequence[Judged], writer: Writer, tolerance_s: float, warnings: tuple[Problem, ...]
+    scenario: Scenario, done: tuple[Outcome, Sequence[Judged]], writer: Writer, tolerance_s: float, warnings: tuple[Problem, ...]
 ) -> Judgement:
+    outcome, judged = done
     trains = tuple(item.verdict for item in judged)
     delays = tuple(row for item in judged for row in item.delays)
     sections = tuple(row for item in judged for row in item.sections)
@@ -118,7 +119,7 @@ def _put_together(
     verdict: Any = "feasible" if holds else "infeasible"
     overall = {"verdict": verdict, "reserve_left_s": reserve, "tolerance_s": tolerance_s}
     figures = [*outcome.key_figures, *key_figures(trains, lost, reserve)]
-    said = {**outcome.run, "feasibility": feasibility_notes(trains, lost, overall)}
+    said = {**outcome.run, "input_hash": scenario.input_hash, "feasibility": feasibility_notes(trains, lost, overall)}
     outcome = replace(outcome, run=said, key_figures=figures, warnings=(*outcome.warnings, *warnings))
     return Judgement(outcome, trains, delays, sections, lost, verdict, reserve, tolerance_s, outcome.warnings)
 
