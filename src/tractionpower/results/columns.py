@@ -38,10 +38,10 @@ DELAY_PARTS = {
 """Parts of a delay, which add up to it."""
 
 ORIGIN_PARTS = {
-    "timetable": "to a timetable shorter than the train can run, or a start later than planned.",
+    "timetable": "to a timetable shorter than the train can run.",
     "current_limit": "to train current limits.",
     "voltage": "to low voltage.",
-    "dwell": "to stops.",
+    "dwell": "to stops and turn-rounds.",
     "driving": "to driving that is not flat out.",
 }
 """Where the seconds of a delay first arose; they add up to it."""

@@ -150,12 +150,9 @@ def timed_events(facts: TrainFacts) -> Iterator[Event]:
 def chain_of(facts: TrainFacts, inherited: Mapping[str, float]) -> Chain:
     """Return the chain of a train; `inherited` are the origins of the delay at the end of the run that it comes from [s]."""
     events = list(timed_events(facts))
-    begin = facts.planned.start_s
-    if events and events[0].kind == "departure" and facts.calls[events[0].call].at_m < AT_END_M:
-        begin = min(begin, events[0].planned_s)  # a start after the planned departure is a late start
-    start = Event(START, "departure", begin, facts.entered_s)
-    late = facts.entered_s - begin if np.isfinite(facts.entered_s) else 0.0
-    lateness: Lateness | None = start_lateness(late, _origins_of_start(facts, late, inherited))
+    start = Event(START, "departure", facts.planned.start_s, facts.entered_s)
+    late = facts.entered_s - facts.planned.start_s if np.isfinite(facts.entered_s) else 0.0
+    lateness: Lateness | None = start_lateness(late, _origins_of_start(late, inherited))
     assert lateness is not None
     chain, running, before = Chain(lateness), RunningAt(facts), start
     for event in events:
@@ -165,15 +162,12 @@ def chain_of(facts: TrainFacts, inherited: Mapping[str, float]) -> Chain:
     return Chain(chain.start, chain.links, _spare(facts, running, chain.links))
 
 
-def _origins_of_start(facts: TrainFacts, late_s: float, inherited: Mapping[str, float]) -> dict[str, float]:
-    """Return why a run starts late [s]: by its timetable, by what the train brings along, the rest by its turn-round."""
-    by_timetable = min(late_s, max(0.0, facts.planned.start_s - (facts.entered_s - late_s)))
-    brought, rest = sum(inherited.values()), max(0.0, late_s - by_timetable)
-    share = min(1.0, rest / brought) if brought > 0.0 else 0.0
+def _origins_of_start(late_s: float, inherited: Mapping[str, float]) -> dict[str, float]:
+    """Return why a run starts late [s]: by what the train brings along, the rest by its turn-round."""
+    brought = sum(inherited.values())
+    share = min(1.0, max(late_s, 0.0) / brought) if brought > 0.0 else 0.0
     origins = {name: share * value for name, value in inherited.items()}
-    origins["timetable"] = origins.get("timetable", 0.0) + by_timetable
-    origins["dwell"] = origins.get("dwell", 0.0) + rest - share * brought
-    return origins
+    return origins | {"dwell": origins.get("dwell", 0.0) + max(late_s, 0.0) - share * brought}
 
 
 def _link(facts: TrainFacts, running: RunningAt, ends: tuple[Event, Event], before: Lateness | None) -> Link:

@@ -75,7 +75,7 @@ class Lateness:
 def start_lateness(late_s: float, origins: dict[str, float]) -> Lateness:
     """Return the lateness with which a run starts; `origins` [s] need not add up, they are scaled."""
     delay, total = max(late_s, 0.0), sum(origins.values())
-    share = {name: origins.get(name, 0.0) / total if total > 0.0 else float(name == "timetable") for name in ORIGINS}
+    share = {name: origins.get(name, 0.0) / total if total > 0.0 else float(name == "dwell") for name in ORIGINS}
     parts = dict.fromkeys(("knock_on", *LOSSES), 0.0) | {"knock_on": delay}
     return Lateness(late_s, parts, {name: delay * part for name, part in share.items()})
 

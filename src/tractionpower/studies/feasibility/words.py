@@ -95,8 +95,6 @@ def _late(story: Story, worst: Link) -> str:
 
 def _part(story: Story, worst: Link, name: str, seconds: float) -> str:
     if name != "voltage":
-        if name == "timetable" and story.chain.start.origins["timetable"] >= seconds - TOLD_S:
-            return f"{seconds:.0f} s by a start after the planned departure"
         return CAUSES[name].format(s=seconds)
     profile = _where_lost(story, worst)
     words, stretch, area = f"{seconds:.0f} s lost to low voltage", profile.stretch(), profile.worst_area()
