@@ -42,7 +42,7 @@ def test_stops_are_taken_off_wherever_they_lie_in_a_step():
     arrived = np.array([each.arrival_s for each in found.calls])
     expected = arrived - [0.0, 30.0, 30.0]
     np.testing.assert_allclose(
-        running_at_calls(0.0, np.array([True, False, True]), arrived, arrived + [30.0, 0.0, 10.0]), expected
+        running_at_calls(0.0, np.array([True, False, True]), arrived, arrived + np.array([30.0, 0.0, 10.0])), expected
     )
     for left in ([np.nan] * 3, [500.3, np.nan, np.nan], [arrived[0] + 30.0, np.nan, np.nan]):
         times = alone(scenario, left=left)

@@ -254,7 +254,7 @@ def judged_busy() -> tuple[Judgement, Results]:
 
 
 def test_the_tables_agree_with_each_other(judged_busy):
-    judged, results = judged_busy
+    _, results = judged_busy
     calls, delays, sections, lost = (results.table(name) for name in ("calls", "delays", "sections", "lost_time"))
     assert (delays["cause"] != "").any()
     assert {"voltage", "knock_on"} <= set(delays["cause"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from tractionpower.movement.compile import PlannedRun
 from tractionpower.movement.journey import JourneyCall
 from tractionpower.studies.feasibility.alone import AloneTimes
 from tractionpower.studies.feasibility.parts import Elapsed, Lateness, carry_on, start_lateness
-from tractionpower.studies.feasibility.recording import Trace
+from tractionpower.studies.feasibility.recording import LEAST_S, Trace
 
 Floats = NDArray[np.float64]
 
@@ -32,8 +33,8 @@ class TrainFacts:
         The run on its route, and its calls with the times of the run with the network.
     entered_s, reached_m
         When it came onto the line [s], NaN if it did not; how far it came [m].
-    is_finished, is_stuck
-        Whether it came to the end of its run, or cannot go on.
+    finished_s, is_stuck
+        When it came to the end of its run [s], NaN if it did not; whether it cannot go on.
     trace, alone
         What was recorded of it, and its running times alone.
     has_plan
@@ -44,7 +45,7 @@ class TrainFacts:
     calls: tuple[JourneyCall, ...]
     entered_s: float
     reached_m: float
-    is_finished: bool
+    finished_s: float
     is_stuck: bool
     trace: Trace
     alone: AloneTimes
@@ -54,6 +55,25 @@ class TrainFacts:
     def name(self) -> str:
         """Identifier of the run."""
         return self.planned.run.id
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether it came to the end of its run."""
+        return bool(np.isfinite(self.finished_s))
+
+    @cached_property
+    def held_s(self) -> Floats:
+        """For how long it stood on its way since effort or voltage lacked, by step of its trace [s]."""
+        stops = [
+            (call.arrival_s, call.departure_s if np.isfinite(call.departure_s) else np.inf)
+            for call in self.calls
+            if call.kind == "stop" and np.isfinite(call.arrival_s)
+        ]
+        return self.trace.held([*stops, *([(self.finished_s, np.inf)] if self.is_finished else [])])
+
+    def held_until(self, time_s: float) -> float:
+        """Return for how long it had stood on its way by a time [s]."""
+        return float(self.held_s[self.trace.begins_s < time_s - LEAST_S].sum())
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +139,7 @@ class RunningAt:
         stops = np.array([call.kind == "stop" for call in calls], bool)
         left = np.array([call.departure_s for call in calls])
         actual = running_at_calls(facts.entered_s, stops, arrived, left)
-        held = np.array([facts.trace.held_until(time_s) if np.isfinite(time_s) else 0.0 for time_s in arrived])
+        held = np.array([facts.held_until(time_s) if np.isfinite(time_s) else 0.0 for time_s in arrived])
         come = np.isfinite(actual)
         recorded = np.where(come, alone.recorded.at_calls_s + held, np.nan)  # what it stood for want of voltage is lost to it
         self._of = {

@@ -92,7 +92,8 @@ class LossProfile:
 def loss_profile(facts: TrainFacts, areas: Areas, from_s: float) -> LossProfile:
     """Return where a train lost time to low voltage after the time `from_s` [s], up to where it came."""
     rows = facts.trace.rows
-    counted = rows[rows["time_s"] >= from_s - 1e-9]
+    counts = rows["time_s"] >= from_s - 1e-9
+    counted, held = rows[counts], facts.held_s[counts]
     from_m, to_m = (float(counted["s_m"][0]) if len(counted) else facts.reached_m), facts.reached_m
     if not to_m > from_m:
         nothing = np.zeros(0)
@@ -104,10 +105,8 @@ def loss_profile(facts: TrainFacts, areas: Areas, from_s: float) -> LossProfile:
     places = np.unique(np.concatenate((np.linspace(from_m, to_m, count), inner)))
     slower = facts.alone.recorded.until(places) - facts.alone.limited.until(places)
     lost = np.nan_to_num(np.diff(slower))
-    held = counted[counted["held"]]
-    if len(held) and len(lost):
-        piece = np.clip(np.searchsorted(places, held["s_m"], side="right") - 1, 0, len(lost) - 1)
-        np.add.at(lost, piece, facts.trace.step_s)
+    piece = np.clip(np.searchsorted(places, counted["s_m"], side="right") - 1, 0, len(lost) - 1)
+    np.add.at(lost, piece, held)
     return _by_kilometre(facts, areas, places, lost)
 
 

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.kernels.train_tables import HOLDING, POINT
+from tractionpower.kernels.train_tables import POINT
 
 Floats = NDArray[np.float64]
 
+LEAST_S = 1e-6
+"""Shorter than this nothing is held: times are rounded [s]."""
+
 TRACE = np.dtype(
     [
-        ("train", "i4"), ("time_s", "f8"), ("s_m", "f8"), ("voltage_v", "f8"), ("on_line_s", "f8"), ("held", "?"),
+        ("train", "i4"), ("time_s", "f8"), ("s_m", "f8"), ("voltage_v", "f8"), ("on_line_s", "f8"), ("still", "?"),
     ]
 )  # fmt: skip
-"""A step of a train: what of `TRAIN_ROW` is kept; held: it stands on its way since effort or voltage lack."""
+"""A step of a train: what of `TRAIN_ROW` is kept; still: it does not move in it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,11 +39,14 @@ class Trace:
     rows: NDArray[np.void]
     step_s: float
 
+    @property
+    def begins_s(self) -> Floats:
+        """When each step begins for it [s]: that in which it enters when it does."""
+        return np.asarray(self.rows["time_s"] + self.step_s - np.minimum(self.rows["on_line_s"], self.step_s))
+
     def entered_s(self) -> float:
         """Return when it came onto the line [s]; NaN if it never did, or before the clock."""
-        if not len(self.rows):
-            return np.nan
-        return float(self.rows["time_s"][0] + self.step_s - min(self.rows["on_line_s"][0], self.step_s))
+        return float(self.begins_s[0]) if len(self.rows) else np.nan
 
     def voltages(self, before_v: float) -> NDArray[np.void]:
         """Return the voltage over the distance of the front, records of `POINT`; `before_v` [V] where it ran before the clock.
@@ -58,9 +65,20 @@ class Trace:
         first = np.array([(0.0, before_v), (np.nextafter(at[0], 0.0), before_v)], POINT)
         return np.concatenate((first, points))
 
-    def held_until(self, time_s: float) -> float:
-        """Return for how long it had stood on its way by a time [s]."""
-        return self.step_s * float(np.count_nonzero(self.rows["held"] & (self.rows["time_s"] < time_s)))
+    def held(self, stops: Sequence[tuple[float, float]]) -> Floats:
+        """Return for how long it stands on its way in each step since effort or voltage lack [s].
+
+        Parameters
+        ----------
+        stops
+            From when to when it stood at its stops, and from when on it stays at its end [s].
+        """
+        rows = self.rows
+        begin, end = self.begins_s, rows["time_s"] + self.step_s
+        held = np.where(rows["still"], end - begin, 0.0)
+        for arrived, left in stops:
+            held -= np.where(rows["still"], np.maximum(np.minimum(end, left) - np.maximum(begin, arrived), 0.0), 0.0)
+        return np.asarray(np.where(held > LEAST_S, held, 0.0))
 
     def lowest_v(self, from_s: float, until_s: float) -> float:
         """Return the lowest voltage of the steps between two times [s]; NaN without one [V]."""
@@ -81,7 +99,7 @@ class Recording:
         kept = np.empty(len(rows), TRACE)
         for name in ("train", "time_s", "s_m", "voltage_v", "on_line_s"):
             kept[name] = rows[name]
-        kept["held"] = (rows["phase"] >= HOLDING) & (rows["moved_m"] == 0.0) & (rows["v_mps"] == 0.0)
+        kept["still"] = (rows["moved_m"] == 0.0) & (rows["v_mps"] == 0.0)
         self._parts.append(kept)
 
     def traces(self, trains: int, step_s: float) -> list[Trace]:

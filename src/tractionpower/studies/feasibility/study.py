@@ -137,7 +137,7 @@ def _facts(scenario: Scenario, run: Run, recording: Recording) -> list[TrainFact
             calls=calls_of(planned, state, int(table[k]["first_stop"])),
             entered_s=float(entered[k]),
             reached_m=float(state.movers[k]["s_m"]),
-            is_finished=bool(state.movers[k]["status"] in (GONE, STAYING)),
+            finished_s=float(state.movers[k]["finished_s"]),
             is_stuck=bool(state.movers[k]["held_s"] >= STUCK_S),
             trace=traces[k],
             alone=alone[k],

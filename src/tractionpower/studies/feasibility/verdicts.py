@@ -128,13 +128,14 @@ def _whole_run(facts: TrainFacts, span: Span) -> tuple[float, float]:
     """Return the running time alone at nominal voltage [s], and what it grows to on the recorded voltages, as a ratio."""
     shortest = facts.alone.shortest
     rows = facts.trace.rows
-    counted = rows[rows["time_s"] >= span.from_s - 1e-9]
+    counts = rows["time_s"] >= span.from_s - 1e-9
+    counted = rows[counts]
     whole = float(shortest.time_s[-1]) if len(shortest.time_s) else NAN
     if not len(counted):
         return whole, NAN
     ends = np.array([float(counted["s_m"][0]), facts.reached_m])
     recorded = float(np.diff(facts.alone.recorded.until(ends))[0])
-    recorded += facts.trace.step_s * float(np.count_nonzero(counted["held"]))
+    recorded += float(facts.held_s[counts].sum())
     limited = float(np.diff(facts.alone.limited.until(ends))[0])
     return whole, recorded / limited if limited > 0.0 else NAN
 
