@@ -58,3 +58,12 @@ def test_chosen_runs_and_their_order():
     assert [found.run.id for found in theoretical_journeys(scenario)] == ["a", "b", "c"]
     (one,) = theoretical_journeys(scenario, runs=["c"])
     assert (one.run.id, one.start_s) == ("c", 0.0)
+
+
+def test_every_run_may_have_a_voltage_of_its_own():
+    scenario = make_trains(5.0, runs=[make_run("x", 5.0), make_run("y", 5.0), make_run("z", 5.0)])
+    voltages = {"x": 2500.0, "y": [(0.0, 3000.0), (2000.0, 2000.0)]}
+    x, y, z = theoretical_journeys(scenario, voltage_v=voltages)
+    assert (x.rows["voltage_v"] == 2500.0).all()
+    assert (z.rows["voltage_v"] == 3000.0).all()
+    np.testing.assert_allclose(y.rows["voltage_v"], np.interp(y.rows["s_m"], [0.0, 2000.0], [3000.0, 2000.0]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -96,7 +96,7 @@ class Journey:
 def theoretical_journeys(
     scenario: Scenario,
     *,
-    voltage_v: Voltage | None = None,
+    voltage_v: Voltage | Mapping[str, Voltage] | None = None,
     step_s: float | None = None,
     form: Form = "time",
     runs: Sequence[str] | None = None,
@@ -108,7 +108,7 @@ def theoretical_journeys(
     scenario
         The scenario; its supply counts with its nominal voltage only.
     voltage_v
-        Voltage at the pantograph; left out: the nominal one.
+        Voltage at the pantograph, or that of each run by its identifier; left out, or not told of a run: the nominal one.
     step_s
         Time step [s]; left out: that of the clock.
     form
@@ -117,12 +117,17 @@ def theoretical_journeys(
         Identifiers of the runs; left out: all.
     """
     movement = compile_driven(scenario, runs)
-    given = movement.voltages.u_n if voltage_v is None else voltage_v
-    points = [(0.0, given)] if isinstance(given, int | float) else list(given)
-    voltage = np.array(points, POINT)
+    nominal = movement.voltages.u_n
+    own = voltage_v if isinstance(voltage_v, Mapping) else dict.fromkeys(movement.names, voltage_v)
+    voltages = [_points(nominal if (given := own.get(name)) is None else given) for name in movement.names]
     step = scenario.clock.step_s if step_s is None else step_s
     state = new_train_state(movement.tables)
-    return [_run(movement, state, k, voltage, step, form) for k in range(len(movement.runs))]
+    return [_run(movement, state, k, voltage, step, form) for k, voltage in enumerate(voltages)]
+
+
+def _points(voltage_v: Voltage) -> NDArray[np.void]:
+    """Return a voltage as points over the distance of the front."""
+    return np.array([(0.0, voltage_v)] if isinstance(voltage_v, int | float) else list(voltage_v), POINT)
 
 
 def _run(movement: Movement, state: TrainState, k: int, voltage: NDArray[np.void], step: float, form: Form) -> Journey:

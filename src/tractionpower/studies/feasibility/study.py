@@ -11,6 +11,7 @@ import numpy as np
 import pyarrow as pa
 
 from tractionpower.cosimulation.calls import call_rows
+from tractionpower.cosimulation.calls_only import run_for_calls
 from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
 from tractionpower.errors import Problem, UsageError
 from tractionpower.kernels.train_tables import GONE, OUTSIDE, STAYING
@@ -218,10 +219,9 @@ def lateness(scenario: Scenario) -> dict[str, float]:
     InputError
         If the scenario has errors; all of them are told.
     """
-    run = Run(scenario.model_copy(update={"output": Output(tables=("calls",))}), _Nowhere())
-    outcome = run.execute()
-    movement, state = run.compiled.movement, run.state.trains
-    from_s, until_s = scenario.clock.start + (scenario.clock.warm_up or 0.0), float(outcome.run["end_s"])
+    times = run_for_calls(scenario)
+    movement, state = times.movement, times.trains
+    from_s, until_s = scenario.clock.start + (scenario.clock.warm_up or 0.0), scenario.clock.end
     worst: dict[str, float] = {}
     for k, planned in enumerate(movement.runs):
         calls = calls_of(planned, state, int(movement.tables.trains[k]["first_stop"]))
