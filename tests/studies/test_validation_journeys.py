@@ -1,5 +1,6 @@
 """Figures of theoretical journeys for reference cases."""
 
+import numpy as np
 import pytest
 from train_study import write_train_study
 
@@ -62,6 +63,31 @@ def test_distance_effort_and_speeds(figures):
     assert figures["journeys.11.end_speed_kmh"] == 0.0
     assert figures["journeys.EC 2/1.end_speed_kmh"] == pytest.approx(100.0, rel=1e-6)
     assert figures["journeys.11.starting_resistor_share"] == 0.0
+
+
+def test_times_between_calls_and_speeds_at_passings(scenario, figures):
+    parts = [figures[f"journeys.11.from_{name}_s"] for name in ("A_to_B", "B_to_P", "P_to_C")]
+    assert sum(parts) == pytest.approx(figures["journeys.11.at_C_s"])
+    assert min(parts) > 0.0
+    (journey,) = theoretical_journeys(scenario, runs=["11"])
+    by_place = np.interp(3500.0, journey.rows["s_m"], journey.rows["v_mps"]) * 3.6
+    assert figures["journeys.11.speed_at_P_kmh"] == pytest.approx(by_place, abs=0.1)
+    assert "journeys.11.speed_at_B_kmh" not in figures
+
+
+def test_net_energy_is_what_is_taken_less_what_is_returned(figures):
+    taken, returned = (figures[f"journeys.11.energy_{kind}_kwh"] for kind in ("taken", "returned"))
+    assert returned > 0.1
+    assert figures["journeys.11.net_energy_kwh"] == taken - returned
+
+
+def test_a_tolerance_may_be_a_share(tmp_path):
+    write_train_study(tmp_path)
+    check = "  - {title: TITLE, forms: [time], tolerance_percent: SHARE, expect: {journeys.11.distance_m: 5460}}\n"
+    checks = check.replace("TITLE", "wide").replace("SHARE", "1") + check.replace("TITLE", "narrow").replace("SHARE", "0.5")
+    (tmp_path / CASE_FILE).write_text(f"format: 1\ntitle: shares\nsource: none\nchecks:\n{checks}", encoding="utf-8")
+    met = {finding.check: finding.met for finding in run_case(tmp_path) if finding.figure.endswith("distance_m")}
+    assert met == {"wide": True, "narrow": False}
 
 
 def test_a_lower_voltage_makes_the_train_later(scenario, figures):

@@ -52,6 +52,9 @@ class Check(Declaration):
     forms: tuple[Form, ...] = Field(default=("time", "speed"), min_length=1, description="Forms in which journeys are computed.")
     expect: dict[str, Real] = Field(description="Expected figures by table.device.column, or journeys.train.figure.")
     tolerance: Annotated[float, Field(gt=0)] | None = Field(default=None, description="In place of the tolerance of the case.")
+    tolerance_percent: Annotated[float, Field(gt=0)] | None = Field(
+        default=None, description="As a share of each expected figure; in place of other tolerances."
+    )
     status: Text = Field(default="complete", description="Status that the run must have.")
 
     @property
@@ -115,11 +118,13 @@ def run_case(folder: Path) -> Iterator[Finding]:
 
 def _find(folder: Path, case: Case, check: Check, form: Form | Literal[""], scenario: Scenario) -> Iterator[Finding]:
     figures, status = journey_figures(scenario, check.voltage_v, form) if form else _compute(scenario)
-    tolerance = check.tolerance or case.tolerance
-    yield Finding(folder.name, check.title, "status", check.status, status, tolerance, case.source, form)
+    absolute = check.tolerance or case.tolerance
+    share = (check.tolerance_percent or 0.0) / 100.0
+    yield Finding(folder.name, check.title, "status", check.status, status, absolute, case.source, form)
     for figure, expected in check.expect.items():
         if figure not in figures:
             raise InputError([_unknown(folder, figure, figures)])
+        tolerance = share * abs(expected) if share else absolute
         yield Finding(folder.name, check.title, figure, expected, figures[figure], tolerance, case.source, form)
 
 

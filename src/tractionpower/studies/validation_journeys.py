@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
@@ -29,8 +30,9 @@ ENERGIES = {
 def journey_figures(scenario: Scenario, voltage_v: float | None, form: Form) -> tuple[dict[str, float], str]:
     """Return the figures of the journeys of all trains of a study, and the status of their computation.
 
-    They are the key figures of the journeys under their own names, energies, distance, greatest effort, speed at the end,
-    and for every call ``at_<station>_s``, its arrival after the start of the run.
+    They are the key figures of the journeys under their own names, net and other energies, distance, greatest effort, speed at
+    the end; for every call ``at_<station>_s``, its arrival after the start of the run, ``speed_at_<station>_kmh`` where the
+    train passes, and ``from_<station before>_to_<station>_s``, the time from one arrival to the next.
 
     Parameters
     ----------
@@ -52,6 +54,9 @@ def journey_figures(scenario: Scenario, voltage_v: float | None, form: Form) -> 
     figures = {f"{PREFIX}{journey.run.id}.{name}": value for journey in outcome.journeys for name, value in _figures(journey)}
     for figure in outcome.key_figures:
         figures[f"{PREFIX}{figure['place'].removeprefix('train ')}.{figure['name']}"] = figure["value"]
+    for run in (journey.run.id for journey in outcome.journeys):
+        taken, returned = (figures[f"{PREFIX}{run}.energy_{kind}_kwh"] for kind in ("taken", "returned"))
+        figures[f"{PREFIX}{run}.net_energy_kwh"] = taken - returned
     return figures, str(outcome.run["status"])
 
 
@@ -64,6 +69,12 @@ def _figures(journey: Journey) -> Iterator[tuple[str, float]]:
     yield "distance_m", end_of(journey)
     yield "greatest_effort_kn", float(rows["traction_n"].max()) / 1000.0
     yield "end_speed_kmh", journey.end_mps * KMH_PER_MPS
-    for call in journey.calls:
-        if np.isfinite(call.arrival_s):
-            yield f"at_{call.station}_s", call.arrival_s - journey.start_s
+    times = np.append(rows["time_s"], journey.end_s)
+    speeds = np.append(rows["v_mps"], journey.end_mps) * KMH_PER_MPS
+    called = [call for call in journey.calls if np.isfinite(call.arrival_s)]
+    for call in called:
+        yield f"at_{call.station}_s", call.arrival_s - journey.start_s
+        if call.kind == "pass":
+            yield f"speed_at_{call.station}_kmh", float(np.interp(call.arrival_s, times, speeds))
+    for before, after in pairwise(called):
+        yield f"from_{before.station}_to_{after.station}_s", after.arrival_s - before.arrival_s
