@@ -318,11 +318,13 @@ def test_starting_resistors_fall_to_none(name):
 
 @pytest.mark.parametrize(
     ("name", "effort", "power", "v_break"),
-    [  # effort [kN], power [kW], speed where the two meet [km/h]; ED250 0.49 m/s2 x 410 t x 1.04
+    [  # effort [kN], power [kW], speed where the two meet [km/h]; ED250 0.49 m/s2 x 410 t x 1.04, EN97 and EN100 1.2 m/s2 x 1.08
         ("vectron-dc", 300.0, 5200.0, 62.4),
         ("dragon", 410.0, 5000.0, 43.9),
         ("e464", 200.0, 3500.0, 63.0),
         ("ed250", 0.49 * 410 * 1.04, 5664.0, 97.6),
+        ("en97", 1.2 * 101.5 * 1.08, 1440.0, 39.4),
+        ("en100", 1.2 * 111.9 * 1.08, 1440.0, 35.8),
     ],
 )
 def test_inverter_vehicles(name, effort, power, v_break):
