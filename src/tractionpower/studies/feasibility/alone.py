@@ -22,7 +22,7 @@ WORKERS = 2
 """Threads; kernels hold no lock."""
 
 _NEVER_THE_SAME = 1e-6
-_WHOLE_RUN = ("start_s", "first_stop")
+_OF_THE_RUN = ("start_s", "first_stop", "first_turn", "turns", "waits", "takes_over")
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +125,6 @@ class _Shared:
         stops = self._tables.stops[train["first_stop"] : train["first_stop"] + train["stops"]].copy()
         after = np.round((np.append(stops["departure_s"], train["start_s"]) - self._starts[k]) / _NEVER_THE_SAME)
         stops["departure_s"] = 0.0
-        for name in _WHOLE_RUN:
+        for name in _OF_THE_RUN:
             train[name] = 0
         return train.item(), tuple(stops.tolist()), after.tobytes()

@@ -31,8 +31,9 @@ class TrainFacts:
     ----------
     planned, calls
         The run on its route, and its calls with the times of the run with the network.
-    entered_s, reached_m
-        When it came onto the line [s], NaN if it did not; how far it came [m].
+    entered_s, due_s, reached_m
+        When it came onto the line, or took the place of others [s], NaN if it did not; when it should have by its timetable
+        [s]; how far it came [m].
     finished_s, is_stuck
         When it came to the end of its run [s], NaN if it did not; whether it cannot go on.
     trace, alone
@@ -44,6 +45,7 @@ class TrainFacts:
     planned: PlannedRun
     calls: tuple[JourneyCall, ...]
     entered_s: float
+    due_s: float
     reached_m: float
     finished_s: float
     is_stuck: bool
@@ -170,8 +172,8 @@ def timed_events(facts: TrainFacts) -> Iterator[Event]:
 def chain_of(facts: TrainFacts, inherited: Mapping[str, float]) -> Chain:
     """Return the chain of a train; `inherited` are the origins of the delay at the end of the run that it comes from [s]."""
     events = list(timed_events(facts))
-    start = Event(START, "departure", facts.planned.start_s, facts.entered_s)
-    late = facts.entered_s - facts.planned.start_s if np.isfinite(facts.entered_s) else 0.0
+    start = Event(START, "departure", facts.due_s, facts.entered_s)
+    late = facts.entered_s - facts.due_s if np.isfinite(facts.entered_s) else 0.0
     lateness: Lateness | None = start_lateness(late, _origins_of_start(late, inherited))
     assert lateness is not None
     chain, running, before = Chain(lateness), RunningAt(facts), start

@@ -44,10 +44,6 @@ class Trace:
         """When each step begins for it [s]: that in which it enters when it does."""
         return np.asarray(self.rows["time_s"] + self.step_s - np.minimum(self.rows["on_line_s"], self.step_s))
 
-    def entered_s(self) -> float:
-        """Return when it came onto the line [s]; NaN if it never did, or before the clock."""
-        return float(self.begins_s[0]) if len(self.rows) else np.nan
-
     def voltages(self, before_v: float) -> NDArray[np.void]:
         """Return the voltage over the distance of the front, records of `POINT`; `before_v` [V] where it ran before the clock.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,9 @@ from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
 from tractionpower.errors import Problem, UsageError
 from tractionpower.kernels.train_tables import GONE, OUTSIDE, STAYING
 from tractionpower.model.scenario import Output, Scenario
+from tractionpower.movement.compile import Movement
 from tractionpower.movement.journey import calls_of
+from tractionpower.movement.turns import Link, links_of
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter, RunWriter
 from tractionpower.studies.feasibility.alone import AloneTimes, run_all_alone
@@ -24,7 +26,7 @@ from tractionpower.studies.feasibility.areas import Areas
 from tractionpower.studies.feasibility.chain import Chain, TrainFacts, chain_of
 from tractionpower.studies.feasibility.judgement import NAN, Judgement
 from tractionpower.studies.feasibility.lost import loss_profile
-from tractionpower.studies.feasibility.recording import Recording, Trace
+from tractionpower.studies.feasibility.recording import Recording
 from tractionpower.studies.feasibility.tables import feasibility_notes, key_figures, write_tables
 from tractionpower.studies.feasibility.verdicts import Judged, Span, judge_train
 
@@ -87,7 +89,7 @@ def judge_outcome(scenario: Scenario, run: Run, done: tuple[Outcome, Recording],
     """Judge a run that has been executed, with the recording of its trains."""
     outcome, recording = done
     facts = _facts(scenario, run, recording)
-    chains = _chains(scenario, facts)
+    chains = _chains(_links(scenario, run.compiled.movement), facts)
     clock = scenario.clock
     span = Span(clock.start + (clock.warm_up or 0.0), float(outcome.run["end_s"]), tolerance_s)
     areas, useful = Areas(scenario), _useful_voltages(outcome)
@@ -130,13 +132,15 @@ def _facts(scenario: Scenario, run: Run, recording: Recording) -> list[TrainFact
     movement, state = run.compiled.movement, run.state.trains
     table = movement.tables.trains
     traces = recording.traces(len(movement.runs), scenario.clock.step_s)
-    entered = np.array([_entered(scenario, k, run, trace) for k, trace in enumerate(traces)])
+    entered = np.where(state.movers["status"] == OUTSIDE, NAN, state.entered_s)
+    turn_s = {link.then: link.turn_s for link in sorted(_links(scenario, movement), key=lambda link: link.turn_s)}
     alone = run_all_alone(scenario, entered, state.left_s, traces)
     return [
         TrainFacts(
             planned=planned,
             calls=calls_of(planned, state, int(table[k]["first_stop"])),
             entered_s=float(entered[k]),
+            due_s=planned.start_s - (turn_s[planned.run.id] if table[k]["takes_over"] else 0.0),
             reached_m=float(state.movers[k]["s_m"]),
             finished_s=float(state.movers[k]["finished_s"]),
             is_stuck=bool(state.movers[k]["held_s"] >= STUCK_S),
@@ -148,40 +152,24 @@ def _facts(scenario: Scenario, run: Run, recording: Recording) -> list[TrainFact
     ]
 
 
-def _entered(scenario: Scenario, k: int, run: Run, trace: Trace) -> float:
-    """Return when a train came onto the line [s], NaN if it has not; before the clock it came as planned."""
-    planned_s = run.compiled.movement.runs[k].start_s
-    if run.state.trains.movers[k]["status"] == OUTSIDE:
-        return NAN
-    if planned_s < scenario.clock.start or not len(trace.rows):
-        return planned_s
-    seen = trace.entered_s()
-    return planned_s if seen <= planned_s + 1e-6 else seen
+def _links(scenario: Scenario, movement: Movement) -> list[Link]:
+    """Return which runs of a scenario become which."""
+    return links_of(scenario.timetable, movement.names)
 
 
-def _chains(scenario: Scenario, facts: Sequence[TrainFacts]) -> dict[str, Chain]:
-    """Return the chains of all trains by name; a run that another one turns into hands its delay on."""
-    before = dict(_turns(scenario))
+def _chains(links: Sequence[Link], facts: Sequence[TrainFacts]) -> dict[str, Chain]:
+    """Return the chains of all trains by name; a run that becomes another one hands its delay on, of several the last."""
     known, chains = {train.name: train for train in facts}, dict[str, Chain]()
+    ordered = sorted(links, key=lambda link: (np.nan_to_num(known[link.first].finished_s), link.first))
+    before = {link.then: link.first for link in ordered}
 
     def find(name: str) -> Chain:
         if name not in chains:
             earlier = before.get(name)
-            origins: Mapping[str, float] = find(earlier).end.origins if earlier in known and earlier is not None else {}
-            chains[name] = chain_of(known[name], origins)
+            chains[name] = chain_of(known[name], {} if earlier is None else find(earlier).end.origins)
         return chains[name]
 
     return {train.name: find(train.name) for train in facts}
-
-
-def _turns(scenario: Scenario) -> Iterator[tuple[str, str]]:
-    """Yield each run that comes from another one, and which."""
-    timetable = scenario.timetable
-    for rotation in timetable.rotations:
-        yield from zip(rotation.runs[1:], rotation.runs[:-1], strict=True)
-    for split in timetable.splits:
-        yield from ((portion, split.run) for portion in split.portions)
-    yield from ((join.into, join.portions[0]) for join in timetable.joins)
 
 
 def _useful_voltages(outcome: Outcome) -> dict[str, tuple[float, float]]:
