@@ -252,6 +252,20 @@ def test_present_values_of_trains_change_nothing(with_trains):
         assert apply_change(with_trains, f"{path}={json.dumps(value)}") == with_trains, path
 
 
+def test_a_mapping_or_a_list_is_json(with_trains):
+    driving = apply_change(with_trains, 'timetable.trains[7].driving={"kind": "reserve", "percent": 5}').timetable.trains
+    assert next(run.driving for run in driving if run.id == "7").percent == 5.0
+    days = apply_change(with_trains, 'timetable.trains[7].days=["mon", "sat"]').timetable.trains
+    assert next(run.days for run in days if run.id == "7") == ("mon", "sat")
+
+
+@pytest.mark.parametrize("text", ["{kind: reserve}", "[1, 2", '{"percent": NaN]'])
+def test_what_is_not_json_is_refused(with_trains, text):
+    problem = refused(with_trains, f"timetable.trains[7].driving={text}")
+    assert (problem.code, problem.path) == ("bad_change", "timetable.trains[7].driving")
+    assert "is not JSON" in problem.found
+
+
 @pytest.mark.parametrize(
     ("text", "value"),
     [("1", 1), ("-1.5", -1.5), (".5", 0.5), ("1e3", 1000.0), ("true", True), ("False", False), ("~", None), ("null", None),

@@ -38,7 +38,8 @@ LONG_PROFILE = 50
 """Rows of a load's profile beyond which it is saved as a CSV file of its own."""
 
 _OF_THE_STUDY = (
-    "name", "clock", "day", "coupling", "coupling_voltage_v", "seed", "coast_without_voltage_s", "output", "feasibility",
+    "name", "clock", "day", "coupling", "coupling_voltage_v", "seed", "coast_without_voltage_s", "output",
+    "feasibility", "remedies",
 )  # fmt: skip
 
 

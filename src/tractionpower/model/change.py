@@ -38,7 +38,7 @@ def apply_change(scenario: Scenario, change: str) -> Scenario:
         ``PATH=VALUE``, for example ``supply.section_cabins[C].state=bypassed``. Items of a list are addressed by their
         ``id``, or by a zero-based index where they have none or no id is a number (``trains[ic].vehicles[0].count=2``).
         The value is read as in YAML: a number, ``true``, ``false``, ``null`` (clears an optional value) or a text; a
-        text in quotes stays a text.
+        text in quotes stays a text. In braces or brackets it is JSON: ``timetable.driving={"kind": "to_time"}``.
 
     Raises
     ------
@@ -157,10 +157,20 @@ def _parse(change: str) -> tuple[str, Any]:
     if match is None or not match["value"].strip():
         raise _refusal("bad_change", "", f"{change!r} is not a change", "PATH=VALUE", "write null as value to clear a value")
     path = match["path"].strip()
+    if match["value"].lstrip()[:1] in {"{", "["}:
+        return path, _json(path, match["value"])
     try:
         return path, parse_scalar(match["value"])
     except ValueError:
         raise _refusal("bad_change", path, f"the quotes in {match['value']} do not pair", "a number or a text") from None
+
+
+def _json(path: str, text: str) -> Any:
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        allowed = 'JSON where it begins with a brace or bracket, for example {"kind": "to_time"}'
+        raise _refusal("bad_change", path, f"{text.strip()!r} is not JSON: {error}", allowed) from None
 
 
 def _steps(path: str) -> list[tuple[str, str]]:

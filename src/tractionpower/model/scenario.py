@@ -15,6 +15,7 @@ from tractionpower.model.feasibility import Feasibility
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.quantity import field
+from tractionpower.model.remedies import RemedySearch
 from tractionpower.model.services import unfold
 from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Day, Timetable, TrainRun
@@ -80,6 +81,9 @@ class StudyFile(Declaration):
     )
     output: Output = Field(default=Output(), description="What a run writes.")
     feasibility: Feasibility = Field(default=Feasibility(), description="How the timetable is judged.")
+    remedies: RemedySearch = Field(
+        default=RemedySearch(), description="Bounds of the search for changes that make the timetable feasible."
+    )
 
 
 class Scenario(Declaration):
@@ -105,6 +109,7 @@ class Scenario(Declaration):
     coast_without_voltage_s: Real = 120.0
     output: Output = Output()
     feasibility: Feasibility = Feasibility()
+    remedies: RemedySearch = RemedySearch()
 
     @model_validator(mode="after")
     def _keeps_what_it_uses(self) -> Scenario:

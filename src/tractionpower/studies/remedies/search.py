@@ -1,0 +1,272 @@
+"""The search for the smallest change that makes a timetable feasible."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from itertools import islice
+from pathlib import Path
+
+from tractionpower.model.remedies import KINDS
+from tractionpower.model.scenario import Scenario
+from tractionpower.studies import feasibility
+from tractionpower.studies.feasibility import Judgement
+from tractionpower.studies.remedies.candidate import Candidate, combined, touch_the_same
+from tractionpower.studies.remedies.caps import caps
+from tractionpower.studies.remedies.case import Case
+from tractionpower.studies.remedies.drivings import drivings
+from tractionpower.studies.remedies.headways import headways
+from tractionpower.studies.remedies.ladder import most_trials, smallest
+from tractionpower.studies.remedies.observe import watch
+from tractionpower.studies.remedies.remedy import Remedies, Remedy, Sensitivity, costs_in_words
+from tractionpower.studies.remedies.reserves import reserves
+from tractionpower.studies.remedies.sensitivities import Judge, lost_seconds, sensitivities
+from tractionpower.studies.remedies.shifts import shifts
+from tractionpower.studies.remedies.trials import REFUSED, Lateness, Progress, SpentError, Trial, Trials, judged
+from tractionpower.studies.remedies.verify import verify
+from tractionpower.studies.remedies.window import window
+
+SOURCES: dict[str, Callable[[Case], Iterator[Candidate]]] = {
+    "departure_shift": shifts,
+    "current_cap": lambda case: caps(case, "current_cap"),
+    "power_cap": lambda case: caps(case, "power_cap"),
+    "headway": headways,
+    "reserve": reserves,
+    "driving": drivings,
+}
+
+CTRL_C = "Ctrl-C"
+FIRSTS, SECONDS = 2, 4
+"""Where no change alone suffices: how many of those that come nearest are fixed, and what is tried on top of each."""
+
+
+def search(
+    scenario: Scenario,
+    judgement: Judgement,
+    progress: Progress | None = None,
+    *,
+    folder: str | Path | None = None,
+    lateness: Lateness | None = None,
+    judge: Judge | None = None,
+) -> Remedies:
+    """Search for the smallest change that makes a timetable feasible, verify it by running it, and tell sensitivities.
+
+    Every kind of change is made on the trains whose demand causes the loss, at growing sizes, until no train of the study
+    is late; the smallest size of each is found by halving, in runs of the part of the clock around the late trains. The
+    cheapest are then verified by runs of the whole study. Where none suffices, two are joined. Ctrl-C and the wall time
+    of the bounds end the search with what it has found. Same inputs give the same answer, unless the wall time runs out.
+
+    Parameters
+    ----------
+    scenario
+        The study; `scenario.remedies` holds the bounds.
+    judgement
+        Its judgement.
+    progress
+        Called with the runs done and the most that there can be.
+    folder
+        Where the results of trial runs are kept as they come; a search that is started again uses what is there.
+    lateness, judge
+        What runs and what judges a scenario, in place of those of the study of feasibility.
+    """
+    if judgement.verdict == "feasible":
+        return Remedies((), 0, notes=("The timetable holds as it is; nothing was searched.",))
+    work = _Search(
+        scenario,
+        judgement,
+        lateness or feasibility.lateness,
+        judge or feasibility.judge,
+        Path(folder) if folder is not None else None,
+        progress,
+    )
+    return work.execute()
+
+
+class _Search:
+    # One search: what it knows, what it has tried, what it tells.
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        judgement: Judgement,
+        lateness: Lateness,
+        judge: Judge,
+        folder: Path | None,
+        progress: Progress | None,
+    ) -> None:
+        self.scenario, self.judgement, self.judge = scenario, judgement, judge
+        self.bounds = scenario.remedies
+        self.notes: list[str] = [costs_in_words(self.bounds.costs)]
+        self.interrupted = self.stopped = False
+        self.attempts: dict[Candidate, dict[int, Trial]] = {}
+        self.room = self.bounds.most_runs
+        late = late_trains(judgement)
+        watcher = watch(scenario, late)
+        self.case = Case(scenario, judgement.tolerance_s, late, delays_by_call(judgement), watcher.culprits(), watcher.peaks)
+        self.base = _window_that_shows(scenario, self.case, lateness)
+        self.trials = Trials(self.base, judgement.tolerance_s, lateness, folder, progress)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether trials run the whole study."""
+        return self.base is self.scenario
+
+    def execute(self) -> Remedies:
+        """Search, verify, and tell sensitivities; Ctrl-C ends it with what there is."""
+        self._explore(self._affordable(self._candidates()))
+        if not self.interrupted and not self._any_holds():
+            self.room = self.bounds.most_runs - self.trials.tried  # most of the first runs were spared
+            self._explore(self._affordable(self._pairs()))
+        found = self._remedies()
+        rows: tuple[Sensitivity, ...] = ()
+        try:
+            if not self.stopped:
+                found = verify(found, self.scenario, self.judgement, self.judge)
+            if not self.trials.over:
+                rows = sensitivities(self.case, self.base, self.judgement, self.judge)
+        except KeyboardInterrupt:
+            self._break_off(CTRL_C)
+        return Remedies(tuple(found), self.trials.tried, rows, tuple(self.notes), self.interrupted)
+
+    def _candidates(self) -> list[Candidate]:
+        kinds = [kind for kind in KINDS if kind in self.bounds.kinds]
+        missing = missing_alone(self.judgement)
+        if missing:
+            names = ", ".join(f"{train} ({seconds:.0f} s)" for train, seconds in missing.items())
+            self.notes.append(
+                f"Faster than the trains can run, alone and at nominal voltage: {names}. No change of supply, of other trains"
+                " or of departures helps them; only later planned times were searched."
+            )
+            kinds = [kind for kind in kinds if kind == "reserve"]
+        return [candidate for kind in kinds for candidate in SOURCES[kind](self.case)]
+
+    def _affordable(self, candidates: Sequence[Candidate]) -> list[Candidate]:
+        """Return those whose runs the bounds have room for, even if each needs as many as it can."""
+        taken: list[Candidate] = []
+        left: list[Candidate] = []
+        for candidate in candidates:
+            runs = most_trials(candidate.most)
+            if runs > self.room:
+                left.append(candidate)
+                continue
+            taken.append(candidate)
+            self.room -= runs
+        if left:
+            names = ", ".join(f"{each.kind} of {each.subject}" for each in left)
+            self.notes.append(f"Not tried, beyond most_runs of {self.bounds.most_runs}: {names}.")
+        self.trials.planned += sum(most_trials(candidate.most) for candidate in taken)
+        return taken
+
+    def _explore(self, candidates: Sequence[Candidate]) -> None:
+        """Look for the smallest size of each candidate, several at a time."""
+        for candidate in candidates:
+            self.attempts[candidate] = {}
+        pool = ThreadPoolExecutor(self.bounds.workers)
+        try:
+            for future in [pool.submit(self._climb, candidate) for candidate in candidates]:
+                future.result()
+        except KeyboardInterrupt:
+            self._break_off(CTRL_C)
+        except SpentError:
+            self._break_off(f"its wall time, {self.bounds.wall_time_s:g} s")
+        finally:
+            self.trials.stop_if(self.interrupted)
+            pool.shutdown(cancel_futures=True)
+
+    def _climb(self, candidate: Candidate) -> None:
+        tried = self.attempts[candidate]
+
+        def trial(steps: int) -> Trial:
+            if steps not in tried:
+                tried[steps] = self.trials.run(candidate.change(candidate.size(steps)))
+            return tried[steps]
+
+        def enough(steps: int) -> bool:
+            return math.isfinite(trial(steps).excess_s) and self.case.late.keys().isdisjoint(trial(steps).late)
+
+        smallest(candidate.most, lambda steps: trial(steps).holds, enough)
+
+    def _break_off(self, reason: str) -> None:
+        self.interrupted = True
+        self.stopped |= reason == CTRL_C
+        self.notes.append(f"The search was ended by {reason}; what it had found by then is told.")
+
+    def _any_holds(self) -> bool:
+        return any(trial.holds for tried in self.attempts.values() for trial in tried.values())
+
+    def _pairs(self) -> list[Candidate]:
+        """Return what to try on top of the single changes that come nearest."""
+        ranked = sorted(
+            ((trial.excess_s, number, steps, candidate)
+             for number, (candidate, tried) in enumerate(self.attempts.items())
+             for steps, trial in [_nearest(tried)]
+             if math.isfinite(trial.excess_s)),
+            key=lambda row: row[:3],
+        )  # fmt: skip
+        pairs = []
+        for _, _, steps, first in ranked[:FIRSTS]:
+            others = (second for *_, second in ranked if second is not first and not touch_the_same(first, second))
+            pairs += [combined(first, steps, second) for second in islice(others, SECONDS)]
+        return pairs
+
+    def _remedies(self) -> list[Remedy]:
+        """Return the smallest size that holds of each candidate, by cost; then the nearest of the others, by what is left."""
+        rows: list[tuple[bool, float, int, Remedy]] = []
+        before = lost_seconds(self.judgement)
+        for candidate, tried in self.attempts.items():
+            steps, trial = _nearest(tried)
+            if not math.isfinite(trial.excess_s):
+                continue
+            size = candidate.size(steps)
+            remedy = Remedy(
+                candidate.kind, candidate.subject, size, candidate.unit, candidate.tell(size), candidate.change(size),
+                trial.holds, self.is_whole, trial.worst_s, before, math.nan, round(candidate.cost(size), 6),
+            )  # fmt: skip
+            rows.append((not trial.holds, remedy.cost if trial.holds else trial.excess_s, len(rows), remedy))
+        return [row[-1] for row in sorted(rows, key=lambda row: row[:3])]
+
+
+def _nearest(tried: Mapping[int, Trial]) -> tuple[int, Trial]:
+    """Return the smallest number of steps that holds, or else that which leaves the least."""
+    rows = [(not trial.holds, trial.excess_s, steps) for steps, trial in tried.items()]
+    if not rows:
+        return 0, REFUSED
+    steps = min(rows)[-1]
+    return steps, tried[steps]
+
+
+def late_trains(judgement: Judgement) -> dict[str, float]:
+    """Return how late the trains are for which the timetable does not hold [s]; infinite for one that does not get there."""
+    late = {row.train: row.late_s for row in judgement.trains if row.verdict in {"infeasible", "not finished"}}
+    return {train: seconds if math.isfinite(seconds) else math.inf for train, seconds in sorted(late.items())}
+
+
+def delays_by_call(judgement: Judgement) -> dict[tuple[str, str, str], tuple[float, ...]]:
+    """Return the delays at calls by run, station and kind, in the order of the route [s]."""
+    delays: dict[tuple[str, str, str], tuple[float, ...]] = {}
+    for row in judgement.delays:
+        key = (row.train, row.station, row.kind)
+        delays[key] = (*delays.get(key, ()), row.delay_s)
+    return delays
+
+
+def missing_alone(judgement: Judgement) -> dict[str, float]:
+    """Return by how much the timetable is faster than trains can run alone at nominal voltage, where that makes them late [s]."""
+    missing: dict[str, float] = {}
+    for row in judgement.delays:
+        if row.origin_timetable_s > judgement.tolerance_s:
+            missing[row.train] = max(missing.get(row.train, 0.0), row.origin_timetable_s)
+    return missing
+
+
+def _window_that_shows(scenario: Scenario, case: Case, lateness: Lateness) -> Scenario:
+    """Return the study with a narrowed clock if a run of that shows the lateness of the whole, else the study itself."""
+    narrow = window(scenario, case.late)
+    if narrow is scenario:
+        return scenario
+    seen = judged(lateness(narrow), case.tolerance_s).late
+    agrees = seen.keys() == case.late.keys() and all(
+        math.isclose(seen[run], case.late[run], rel_tol=0.1, abs_tol=case.tolerance_s + 1.0) for run in seen
+    )
+    return narrow if agrees else scenario
