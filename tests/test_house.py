@@ -13,7 +13,19 @@ SOURCES = sorted((ROOT / "src" / "tractionpower").rglob("*.py"))
 HEAVY = ("numpy", "numba", "llvmlite", "pandas", "pyarrow", "pydantic", "ruamel", "matplotlib", "openpyxl")
 MODULE_LINES = 350
 FUNCTION_LINES = 60
-COMMANDS = [[], ["run"], ["check"], ["journey"], ["curves"], ["report"], ["export"], ["validate"], ["schema"], ["new"]]
+COMMANDS = [
+    [],
+    ["run"],
+    ["check"],
+    ["journey"],
+    ["curves"],
+    ["report"],
+    ["export"],
+    ["import"],
+    ["validate"],
+    ["schema"],
+    ["new"],
+]
 
 
 def name_of(path):

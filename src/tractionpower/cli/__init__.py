@@ -13,7 +13,7 @@ from typing import Annotated
 
 import typer
 
-from tractionpower.cli import check, curves, export, journey, new, report, run, schema, validate
+from tractionpower.cli import check, curves, export, import_, journey, new, report, run, schema, validate
 from tractionpower.cli.messages import DONE, exit_code_of
 
 app = typer.Typer(
@@ -30,6 +30,7 @@ app.command("journey")(journey.journey)
 app.command("curves")(curves.curves)
 app.command("report")(report.report)
 app.command("export")(export.export)
+app.command("import")(import_.import_)
 app.command("validate")(validate.validate)
 app.command("schema")(schema.schema)
 app.command("new")(new.new)
