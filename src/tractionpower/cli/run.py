@@ -47,7 +47,7 @@ def run(
     show(outcome, prepared)
     if not no_reports:
         tell("writing figures and workbook")
-    reports, unwritten = ([], None) if no_reports else _write_reports(folder, scenario)
+    reports, unwritten = ([], None) if no_reports else write_run_reports(folder, scenario)
     if unwritten is not None:
         raise unwritten
     tell(f"results: {folder}")
@@ -98,7 +98,7 @@ def _execute(prepared: Run, writer: RunWriter) -> Outcome:
     return outcome
 
 
-def _write_reports(folder: Path, scenario: Scenario) -> tuple[list[Path], OutputError | None]:
+def write_run_reports(folder: Path, scenario: Scenario) -> tuple[list[Path], OutputError | None]:
     """Write the reports and return them, or what hinders that, so that the tables are printed first."""
     from tractionpower.errors import OutputError
     from tractionpower.reporting.reports import write_reports

@@ -53,8 +53,8 @@ class LoadedScenario:
         All parts of the study, resolved and frozen.
     provenance
         File and line of every model path.
-    folder
-        The study's folder.
+    folder, file
+        The study's folder, and the study file in it.
     problems
         Warnings of the reading.
     origin
@@ -69,6 +69,7 @@ class LoadedScenario:
     problems: tuple[Problem, ...] = ()
     origin: str = ""
     conductors: tuple[Conductor, ...] = field(default_factory=shipped_conductors)
+    file: Path = Path(STUDY_FILE)
 
     def changed(self, changes: Iterable[str]) -> Scenario:
         """Return the scenario with changes by path applied; they may name any conductor of the whole table.
@@ -117,7 +118,7 @@ def read_scenario(study: str | Path) -> tuple[LoadedScenario | None, list[Proble
     if scenario is None:
         return None, problems
     told = tuple(problems)
-    loaded = LoadedScenario(scenario, Provenance(files.root), found.folder, told, found.origin, files.conductors)
+    loaded = LoadedScenario(scenario, Provenance(files.root), found.folder, told, found.origin, files.conductors, found.file)
     return loaded, problems
 
 

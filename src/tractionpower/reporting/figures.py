@@ -9,6 +9,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.delay_graph import delay_graphs
+from tractionpower.reporting.lost_figures import delays_by_cause, lost_time
 from tractionpower.reporting.rail_figures import rail_potential_along_line, rail_potential_over_time
 from tractionpower.reporting.run_data import RunData
 from tractionpower.reporting.run_graph import run_graphs
@@ -24,12 +26,14 @@ SINGLE = {
     "substation_currents": substation_currents,
     "substation_loads": substation_loads,
     "load_duration": load_duration,
+    "delays_by_cause": delays_by_cause,
+    "lost_time": lost_time,
     "rail_potential": rail_potential_along_line,
     "rail_potential_time": rail_potential_over_time,
 }
 """Figures of which a run has one, by name; each is left out where its table is missing."""
 
-GRAPHS = ("train_graph", "train_graph_fine")
+GRAPHS = ("train_graph", "train_graph_fine", "delay_graph", "delay_graph_fine")
 TRAINS = "trains"
 """Folder of the figures of single trains."""
 
@@ -54,6 +58,7 @@ def write_figures(results: Results, scenario: Scenario, folder: Path) -> list[Pa
 
 def _figures(data: RunData) -> Iterator[tuple[str, Figure]]:
     yield from run_graphs(data).items()
+    yield from delay_graphs(data).items()
     for name, draw in SINGLE.items():
         figure = draw(data)
         if figure is not None:

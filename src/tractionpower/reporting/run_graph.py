@@ -29,18 +29,23 @@ def run_graphs(data: RunData) -> dict[str, Figure]:
     trains = data.table("trains")
     if trains is None:
         return {}
-    numbers = {track: number for number, tracks in enumerate(data.places.lines) for track in tracks}
-    ran = {name: rows for name, rows in data.rows_of("trains", "train") if name in data.planned}
-    parts = [part for name, rows in ran.items() for part in _lines(data, name, rows, numbers)]
+    parts = train_lines(data)
     if not parts:
         return {}
     begin, end = float(trains["time_s"].min()), max(float(line.time_s[-1]) for _, line in parts)
     graphs = {"train_graph": _graph(data, parts, begin, end, "train graph")}
-    if len(ran) > MOST_NAMES and end - begin > FINE_S:
+    if len({line.name for _, line in parts}) > MOST_NAMES and end - begin > FINE_S:
         first, last = busiest(trains["time_s"])
         inside = [(number, part) for number, line in parts if (part := line.between(first, last)) is not None]
         graphs["train_graph_fine"] = _graph(data, inside, first, last, "train graph of the two hours with most trains")
     return graphs
+
+
+def train_lines(data: RunData) -> list[tuple[int, TrainLine]]:
+    """Return the parts of the runs of all trains, each with the number of its line of tracks."""
+    numbers = {track: number for number, tracks in enumerate(data.places.lines) for track in tracks}
+    ran = {name: rows for name, rows in data.rows_of("trains", "train") if name in data.planned}
+    return [part for name, rows in ran.items() for part in _lines(data, name, rows, numbers)]
 
 
 def _graph(data: RunData, parts: Sequence[tuple[int, TrainLine]], begin: float, end: float, title: str) -> Figure:

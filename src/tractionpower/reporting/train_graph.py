@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from tractionpower.alignment.path import RoutePath
 from tractionpower.reporting.axes import clock_label, set_clock
+from tractionpower.reporting.delay_layer import Box, DelayLayer, draw_delays
 from tractionpower.reporting.labels import LETTER, LINE, fitting
 from tractionpower.reporting.style import BLUE, GREEN, GREY, INK, STYLE, VERMILION, new_figure
 
@@ -99,12 +100,15 @@ class GraphPanel:
         Its tracks in words.
     lines, planned, places
         Trains, planned times [s] and places [km], what stands beside them.
+    delays
+        Where trains are late; then what is on time is pale.
     """
 
     words: str
     lines: Sequence[TrainLine]
     planned: Sequence[tuple[float, float]] = ()
     places: GraphPlaces = GraphPlaces()
+    delays: DelayLayer | None = None
 
     @property
     def length_km(self) -> float:
@@ -193,23 +197,28 @@ def train_graph(panels: Sequence[GraphPanel], title: str) -> Figure:
 def _draw_panel(axes: Axes, panel: GraphPanel, inches: float, *, names: bool, circles: bool) -> None:
     """Draw the trains of a line into axes that are `inches` high."""
     for line in panel.lines:
-        _draw(axes, line, 1.2 if names else 0.6)
+        _draw(axes, line, 1.2 if names else 0.6, pale=panel.delays is not None)
     planned = panel.planned if circles else ()
     if planned:
-        axes.plot(*zip(*planned, strict=True), "o", markerfacecolor="white", markeredgecolor=VERMILION, markersize=4.5,
+        axes.plot(*zip(*planned, strict=True), "o", markerfacecolor="white", markersize=4.5,
+                  markeredgecolor=VERMILION if panel.delays is None else INK,
                   markeredgewidth=1.0, linestyle="", label="planned (timetable)", zorder=3)  # fmt: skip
     axes.margins(y=0.03)
     _name_stations(axes, panel.places.stations, inches)
     _mark_devices(axes, panel.places.devices)
+    written = draw_delays(axes, panel.delays, WIDTH - 2.0, inches) if panel.delays is not None else []
     if names:
-        _name_trains(axes, panel.lines, planned, inches)
+        _name_trains(axes, panel.lines, planned, written, inches)
 
 
-def _draw(axes: Axes, line: TrainLine, width: float) -> None:
+def _draw(axes: Axes, line: TrainLine, width: float, *, pale: bool = False) -> None:
     known = line.km[np.isfinite(line.km)]
-    rising = known[-1] >= known[0]
-    colour, dashes, label = (BLUE, "-", "rising kilometres") if rising else (INK, (0, (5, 2)), "falling kilometres")
-    axes.plot(line.time_s, line.km, color=colour, linestyle=dashes, linewidth=width, label=f"computed, {label}")
+    style: Any = {"color": INK, "linestyle": (0, (5, 2)), "label": "computed, falling kilometres"}
+    if pale:
+        style = {"color": GREY, "linestyle": "-", "label": "on time"}
+    elif known[-1] >= known[0]:
+        style = {"color": BLUE, "linestyle": "-", "label": "computed, rising kilometres"}
+    axes.plot(line.time_s, line.km, linewidth=width, **style)
     if not line.arrives:
         axes.plot(line.time_s[-1], line.km[-1], "X", color=VERMILION, markersize=8, label="not at the end of its route", zorder=4)
     for over, end in ((line.comes_over, 0), (line.goes_over, -1)):
@@ -239,12 +248,14 @@ def _mark_devices(axes: Axes, devices: Sequence[tuple[float, str, bool]]) -> Non
                       transform=axes.get_yaxis_transform())  # fmt: skip
 
 
-def _name_trains(axes: Axes, lines: Sequence[TrainLine], planned: Sequence[tuple[float, float]], inches: float) -> None:
+def _name_trains(
+    axes: Axes, lines: Sequence[TrainLine], planned: Sequence[tuple[float, float]], written: Sequence[Box], inches: float
+) -> None:
     """Write each train's name on its longest line where it moves and nothing else stands, if there is room."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     tall = LINE * (high - low) / inches
     second = (right - left) / (WIDTH - 2.0)  # time in an inch of paper
-    taken = [(x, y, 0.1 * second) for x, y in planned]
+    taken = [*((x, y, 0.1 * second) for x, y in planned), *written]
     lasts = {line.name: max(np.ptp(each.time_s) for each in lines if each.name == line.name) for line in lines}
     for number, line in enumerate(lines):
         time_s, km = line.time_s, line.km

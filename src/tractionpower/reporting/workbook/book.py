@@ -13,14 +13,19 @@ from tractionpower.reporting.workbook import (
     charts,
     cover,
     definitions,
+    delays,
     energy,
     events,
     extracts,
+    feasibility,
     feeders,
     figures,
     inputs,
     limits,
+    lost_time,
+    remedies,
     return_circuit,
+    sections,
     substations,
     trains,
 )
@@ -40,6 +45,8 @@ def build(results: Results, scenario: Scenario) -> Any:
     blank = workbook.active  # styles are made on it
     book = Book(workbook, Facts(results, scenario))
     front = book.page("Cover", shorten(book.facts.study, cover.TITLE_LENGTH))
+    for add in (feasibility.add, remedies.add, delays.add, sections.add, lost_time.add):
+        add(book)
     for add in (limits.add, trains.add, calls.add, substations.add, feeders.add, return_circuit.add, energy.add, figures.add):
         add(book)
     charted = book.page("Charts", "Charts")

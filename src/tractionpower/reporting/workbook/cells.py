@@ -146,6 +146,7 @@ def _look(name: str) -> dict[str, Any]:
     wrapped = Alignment(wrap_text=True, vertical="top")
     looks: dict[str, dict[str, Any]] = {
         "text": {"alignment": wrapped, "border": _BORDER},
+        "beside": {"alignment": Alignment(wrap_text=True, vertical="top", horizontal="left", indent=1), "border": _BORDER},
         "any": {"alignment": Alignment(wrap_text=True, vertical="top", horizontal="left"), "border": _BORDER},
         "head": {
             "font": Font(bold=True, color="FFFFFF"),

@@ -12,6 +12,7 @@ from openpyxl.worksheet.hyperlink import Hyperlink
 from tractionpower.model.base import format_time
 from tractionpower.reporting.workbook.cells import put
 from tractionpower.reporting.workbook.facts import KNOWN_AS, STATES, Facts, limit_in_words
+from tractionpower.reporting.workbook.feasibility import verdict_in_words
 from tractionpower.reporting.workbook.limits import verdict_word
 from tractionpower.reporting.workbook.page import LINE_POINTS, Book, Page
 
@@ -119,6 +120,9 @@ def _coupling(facts: Facts) -> str:
 
 
 def _verdicts(facts: Facts) -> Iterator[Said]:
+    if facts.feasibility is not None:
+        sentence, style = verdict_in_words(facts.feasibility)
+        yield "Feasibility", sentence, f"big {style}"
     verdicts = facts.verdicts
     violated = [verdict for verdict in verdicts if verdict["met"] is False]
     if violated:

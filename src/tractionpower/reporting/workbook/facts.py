@@ -57,6 +57,12 @@ class Facts:
         return self.scenario.name or str(self.run.get("name") or self.run.get("study") or "study")
 
     @property
+    def feasibility(self) -> dict[str, Any] | None:
+        """The verdict on the timetable, if it was judged."""
+        told: dict[str, Any] | None = self.run.get("feasibility")
+        return told
+
+    @property
     def verdicts(self) -> list[dict[str, Any]]:
         """Verdicts of the run, each with all its keys."""
         keys = ("name", "value", "unit", "place", "time", "limit", "limit_value", "source", "status", "met")

@@ -56,7 +56,7 @@ class Column:
     """A column of a table: its heading, the style of its cells, and the width that it may take [characters].
 
     The style is ``text``, a number format such as ``0.0``, ``time`` for seconds that are shown as a time of day, or ``any``
-    where texts and numbers are mixed.
+    where texts and numbers are mixed, ``beside`` for texts on the right of numbers.
     """
 
     heading: str

@@ -1,0 +1,146 @@
+"""``tractionpower feasibility STUDY``: does the timetable hold on this supply, and if not, what would save it?"""
+
+# ruff: noqa: PLC0415 - heavy modules are imported inside the functions that need them
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from tractionpower.cosimulation.run import Outcome
+    from tractionpower.io.scenario_files import LoadedScenario
+    from tractionpower.model.scenario import Scenario
+    from tractionpower.results.store import RunWriter
+    from tractionpower.studies.feasibility import Judgement
+
+Bar = Callable[[int, int], None]
+
+
+def feasibility(
+    study: Annotated[str, typer.Argument(help="Folder with a study.yaml, such a file, or the name of a shipped line.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder of the results; default reports/<study>-feasibility/ here.")
+    ] = None,
+    changes: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change an input, e.g. supply.substations[A].state=bypassed."),
+    ] = None,
+    tolerance: Annotated[
+        float | None, typer.Option("--tolerance", metavar="S", min=0, help="Lateness that is accepted [s]; default of the study.")
+    ] = None,
+    search: Annotated[
+        bool | None, typer.Option("--search/--no-search", help="Search for what would save it; default: when infeasible.")
+    ] = None,
+    no_reports: Annotated[bool, typer.Option("--no-reports", help="Write the tables only, no figures and no workbook.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace what is there, even results of another study.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit with 4 when the timetable is infeasible.")] = False,
+) -> None:
+    """Judge whether the timetable holds on this supply."""
+    from tractionpower.cli.console import warn_of_compilation
+    from tractionpower.cli.feasibility_summary import show
+    from tractionpower.cli.messages import tell, tell_beside, tell_problems
+    from tractionpower.cli.report import tell_reports
+    from tractionpower.cli.run import write_run_reports
+    from tractionpower.io.scenario_files import load_scenario
+    from tractionpower.reporting.reports import WORKBOOK
+
+    loaded = load_scenario(study)
+    scenario = loaded.changed(changes or [])
+    name = study_name(loaded)
+    folder = out if out is not None else Path("reports") / f"{name}-feasibility"
+    tell(f"{scenario.name or name}: {loaded.origin}")
+    warn_of_compilation("advance")
+    judgement, writer = _judge(loaded, scenario, (name, folder), tolerance, force=force)
+    tell_problems(loaded.provenance.place([*loaded.problems, *judgement.warnings]))
+    outcome = _searched(scenario, judgement, writer, search)
+    show(outcome.run)
+    if not no_reports:
+        tell("writing figures and workbook")
+    reports, unwritten = ([], None) if no_reports else write_run_reports(folder, scenario)
+    if unwritten is not None:
+        raise unwritten
+    tell(f"results: {folder}")
+    tell_reports(reports)
+    if no_reports and (folder / WORKBOOK).exists():
+        tell(f"{folder / WORKBOOK} is of an earlier run; `tractionpower report {folder}` writes it again")
+    tell_beside(writer.beside)
+    raise typer.Exit(_exit_code(outcome, judgement, strict))
+
+
+def study_name(loaded: LoadedScenario) -> str:
+    """Return the name of a study: its folder, and the study file where that is not ``study.yaml``."""
+    from tractionpower.io.finder import STUDY_FILE
+
+    file = loaded.file.name
+    return loaded.folder.name if file == STUDY_FILE else f"{loaded.folder.name}-{loaded.file.stem}"
+
+
+def _judge(
+    loaded: LoadedScenario, scenario: Scenario, place: tuple[str, Path], tolerance: float | None, *, force: bool
+) -> tuple[Judgement, RunWriter]:
+    """Judge a scenario; `place` is the name of the study and the folder of the results."""
+    from tractionpower.errors import InputError
+    from tractionpower.results.store import RunWriter
+    from tractionpower.studies.feasibility import judge
+
+    name, folder = place
+    writer = RunWriter(folder, name, scenario.input_hash, force=force, scenario=scenario)
+    try:
+        with _bar("running the timetable") as update:
+            judged = judge(scenario, writer, study=name, tolerance_s=tolerance, progress=update)
+    except BaseException as error:
+        writer.discard()
+        if isinstance(error, InputError):
+            raise InputError(loaded.provenance.place(error.problems)) from None
+        raise
+    return judged, writer
+
+
+def _searched(scenario: Scenario, judgement: Judgement, writer: RunWriter, wanted: bool | None) -> Outcome:
+    """Search for what would save the timetable, where it is wanted, and complete the results; they are kept in any case."""
+    outcome = judgement.outcome
+    try:
+        if wanted or (wanted is None and judgement.verdict != "feasible"):
+            from tractionpower.studies.remedies import as_notes, search
+
+            with _bar("searching what would save it") as update:
+                remedies = search(scenario, judgement, update)
+            said = {
+                "remedies": as_notes(remedies),
+                "sensitivities": as_notes(remedies.sensitivities),
+                "search": {"tried": remedies.tried, "interrupted": remedies.interrupted, "notes": list(remedies.notes)},
+            }
+            outcome = replace(outcome, run={**outcome.run, "feasibility": {**outcome.run["feasibility"], **said}})
+    finally:
+        writer.finish(outcome.run, outcome.key_figures)
+    return outcome
+
+
+@contextmanager
+def _bar(words: str) -> Iterator[Bar]:
+    """Show a bar while something lasts; it is moved by steps done and steps in all."""
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from tractionpower.cli.closed_pipes import PatientConsole
+
+    bar = Progress(
+        TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"), TimeElapsedColumn(),
+        console=PatientConsole(stderr=True), transient=True,
+    )  # fmt: skip
+    with bar:
+        task = bar.add_task(words, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+def _exit_code(outcome: Outcome, judgement: Judgement, strict: bool) -> int:
+    from tractionpower.cli.messages import DONE, LIMIT_VIOLATED, NOT_COMPLETED
+
+    if outcome.flagged:
+        return NOT_COMPLETED
+    return LIMIT_VIOLATED if strict and judgement.verdict != "feasible" else DONE

@@ -1,0 +1,77 @@
+"""The sheet of lost time: seconds lost to low voltage by the area of substations and by kilometre, with charts."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from tractionpower.reporting.places import told
+from tractionpower.reporting.workbook.page import Block, Book, Column, Page
+from tractionpower.reporting.workbook.plots import COLOURS, Line, bars, draw, scatter
+
+LEAST_S = 0.05
+"""Less is not shown [s]."""
+
+KM, LOST, AREA = "place [km]", "lost [s]", "area of"
+
+
+def add(book: Book) -> None:
+    """Add the sheet, if seconds are lost somewhere."""
+    frame = book.facts.table("lost_time")
+    if frame.empty or not (frame["lost_s"].abs() >= LEAST_S).any():
+        return
+    page = book.page("Lost time", "Seconds lost to low voltage, by place")
+    page.note(
+        "Running time of each train alone on the voltages of the run, less that at nominal voltage, both with train current"
+        " limits and driven flat out; summed over all trains. Negative: gained, since the voltage is above the nominal one. The"
+        " area of a place is that of the nearest substation that feeds there."
+    )
+    areas = _areas(page, frame)
+    kms = _by_km(book, page, frame)
+    if areas is not None:
+        page.new_page()
+        page.chart(bars("Seconds lost to low voltage, all trains", LOST, areas, AREA, [LOST]))
+    for words, block in kms:
+        page.new_page()
+        page.chart(_along(f"Seconds lost to low voltage in each kilometre, {words}", block))
+
+
+def _areas(page: Page, frame: pd.DataFrame) -> Block | None:
+    lost = frame[frame["lost_s"] > 0.0]
+    sums = lost.groupby(lost["area"].astype(str))["lost_s"].agg(["sum", "max"])
+    trains = lost.groupby(lost["area"].astype(str))["train"].nunique()
+    sums = sums[sums["sum"] >= LEAST_S].sort_values("sum", ascending=False, kind="stable")
+    if sums.empty:
+        return None
+    page.section("By area")
+    columns = (
+        Column(AREA, widest=30),
+        Column(LOST, "0.0"),
+        Column("trains that lose there", "0"),
+        Column("most in a kilometre [s]", "0.0"),
+    )
+    rows = [(area or "no substation", row["sum"], int(trains[area]), row["max"]) for area, row in sums.iterrows()]
+    return page.table(columns, rows)
+
+
+def _by_km(book: Book, page: Page, frame: pd.DataFrame) -> list[tuple[str, Block]]:
+    """Write a table of kilometres for each line of tracks; return them with the tracks in words."""
+    blocks = []
+    for tracks in book.facts.lines.lines:
+        own = frame[frame["track"].astype(str).isin(list(tracks))]
+        if own.empty:
+            continue
+        sums = own.groupby(own["km"].round(6))["lost_s"].sum()
+        area = dict(zip(own["km"].round(6), own["area"].astype(str), strict=True))
+        trains = own[own["lost_s"] >= LEAST_S / 10.0].groupby(own["km"].round(6))["train"].nunique()
+        page.section(f"By kilometre, {told(tracks)}")
+        columns = (Column(AREA, widest=30), Column(KM, "0.0"), Column(LOST, "0.00"), Column("trains that lose there", "0"))
+        many = dict(trains.items())
+        rows = [(area[km], km, seconds, many.get(km, 0)) for km, seconds in sums.items()]
+        blocks.append((told(tracks), page.table(columns, rows)))
+    return blocks
+
+
+def _along(title: str, block: Block) -> object:
+    chart = scatter(title, KM, LOST, legend=False)
+    draw(chart, block, Line("lost", KM, LOST, block.first, block.last, COLOURS[1]))
+    return chart
