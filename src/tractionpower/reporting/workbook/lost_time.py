@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import pandas as pd
 
 from tractionpower.reporting.places import told
@@ -26,13 +29,19 @@ def add(book: Book) -> None:
         " area of a place is that of the nearest substation that feeds there."
     )
     areas = _areas(page, frame)
-    kms = _by_km(book, page, frame)
     if areas is not None:
         page.new_page()
-        page.chart(bars("Seconds lost to low voltage, all trains", LOST, areas, AREA, [LOST]))
-    for words, block in kms:
+        chart = bars("Seconds lost to low voltage, all trains", LOST, areas, AREA, [LOST])
+        chart.y_axis.scaling.min = 0
+        page.chart(chart)
+    lines = [tracks for tracks in book.facts.lines.lines if frame["track"].astype(str).isin(list(tracks)).any()]
+    rows = []
+    for _ in lines:  # charts before the long tables that they are drawn from
         page.new_page()
-        page.chart(_along(f"Seconds lost to low voltage in each kilometre, {words}", block))
+        rows.append(page.room_for_chart())
+    page.new_page()
+    for tracks, row in zip(lines, rows, strict=True):
+        page.chart(_along(tracks, _by_km(page, frame, tracks)), row)
 
 
 def _areas(page: Page, frame: pd.DataFrame) -> Block | None:
@@ -49,29 +58,24 @@ def _areas(page: Page, frame: pd.DataFrame) -> Block | None:
         Column("trains that lose there", "0"),
         Column("most in a kilometre [s]", "0.0"),
     )
-    rows = [(area or "no substation", row["sum"], int(trains[area]), row["max"]) for area, row in sums.iterrows()]
+    many = dict(trains.items())
+    rows = [(str(area) or "no substation", row["sum"], many[area], row["max"]) for area, row in sums.iterrows()]
     return page.table(columns, rows)
 
 
-def _by_km(book: Book, page: Page, frame: pd.DataFrame) -> list[tuple[str, Block]]:
-    """Write a table of kilometres for each line of tracks; return them with the tracks in words."""
-    blocks = []
-    for tracks in book.facts.lines.lines:
-        own = frame[frame["track"].astype(str).isin(list(tracks))]
-        if own.empty:
-            continue
-        sums = own.groupby(own["km"].round(6))["lost_s"].sum()
-        area = dict(zip(own["km"].round(6), own["area"].astype(str), strict=True))
-        trains = own[own["lost_s"] >= LEAST_S / 10.0].groupby(own["km"].round(6))["train"].nunique()
-        page.section(f"By kilometre, {told(tracks)}")
-        columns = (Column(AREA, widest=30), Column(KM, "0.0"), Column(LOST, "0.00"), Column("trains that lose there", "0"))
-        many = dict(trains.items())
-        rows = [(area[km], km, seconds, many.get(km, 0)) for km, seconds in sums.items()]
-        blocks.append((told(tracks), page.table(columns, rows)))
-    return blocks
+def _by_km(page: Page, frame: pd.DataFrame, tracks: Sequence[str]) -> Block:
+    """Write a table of the kilometres of a line of tracks."""
+    own = frame[frame["track"].astype(str).isin(list(tracks))]
+    km = own["km"].round(6)
+    sums = own.groupby(km)["lost_s"].sum()
+    area = dict(zip(km, own["area"].astype(str), strict=True))
+    many = dict(own[own["lost_s"] >= LEAST_S / 10.0].groupby(km)["train"].nunique().items())
+    page.section(f"By kilometre, {told(tracks)}")
+    columns = (Column(AREA, widest=30), Column(KM, "0.0"), Column(LOST, "0.00"), Column("trains that lose there", "0"))
+    return page.table(columns, [(area[at], at, seconds, many.get(at, 0)) for at, seconds in sums.items()])
 
 
-def _along(title: str, block: Block) -> object:
-    chart = scatter(title, KM, LOST, legend=False)
+def _along(tracks: Sequence[str], block: Block) -> Any:
+    chart = scatter(f"Seconds lost to low voltage in each kilometre, {told(tracks)}", KM, LOST, legend=False)
     draw(chart, block, Line("lost", KM, LOST, block.first, block.last, COLOURS[1]))
     return chart

@@ -166,10 +166,14 @@ class Page:
         self.next += 2 if block.last >= block.first else 1
         return block
 
-    def chart(self, chart: Any) -> None:
-        """Put a chart below what stands there."""
-        self.sheet.add_chart(chart, f"A{self.next}")
+    def chart(self, chart: Any, row: int | None = None) -> None:
+        """Put a chart below what stands there, or into rows that were kept free for it."""
+        self.sheet.add_chart(chart, f"A{self.room_for_chart() if row is None else row}")
+
+    def room_for_chart(self) -> int:
+        """Keep rows free for a chart of what comes later, and return the first of them."""
         self.next += CHART_ROWS
+        return self.next - CHART_ROWS
 
     def new_page(self) -> None:
         """Let what follows begin on a page of its own when it is printed."""

@@ -1,0 +1,113 @@
+"""The sheets of a judged timetable, and what the cover says of it."""
+
+import pytest
+from fake_feasibility import REMEDIES, judged
+from fake_results import make_case
+from openpyxl import load_workbook
+
+from tractionpower.reporting.workbook import write_workbook
+
+SHEETS = ["Feasibility", "What would save it", "Delays", "Sections", "Lost time"]
+LATE = {"1001": {"voltage": 70.0, "dwell": 5.0}}
+
+
+@pytest.fixture(scope="module")
+def book(tmp_path_factory):
+    results, scenario = make_case()
+    file = write_workbook(
+        judged(results, scenario, LATE, **REMEDIES), scenario, tmp_path_factory.mktemp("judged") / "report.xlsx"
+    )
+    return load_workbook(file)
+
+
+def rows_of(sheet, first="train"):
+    """Return the rows of the table whose first heading is `first`, by heading."""
+    cells = [[cell.value for cell in row] for row in sheet.iter_rows()]
+    top = next(k for k, row in enumerate(cells) if row[0] == first)
+    below = cells[top + 1 :]
+    end = next((k for k, row in enumerate(below) if row[0] is None and not any(row)), len(below))
+    return [dict(zip(cells[top], row, strict=True)) for row in below[:end]]
+
+
+def test_the_sheets_stand_behind_the_cover(book):
+    assert book.sheetnames[:6] == ["Cover", *SHEETS]
+
+
+def test_the_cover_says_the_verdict_first(book):
+    told = {row[0].value: row[1].value for row in book["Cover"].iter_rows(max_col=2) if row[0].value}
+    assert told["Feasibility"].startswith(("Is the", "Infeasible"))
+    texts = [row[1].value for row in book["Cover"].iter_rows(max_col=2)]
+    assert any(
+        str(text).startswith("Infeasible: 1 of 4 trains late or not there. Worst: train 1001, late 75 s") for text in texts
+    )
+
+
+def test_trains_that_fail_come_first(book):
+    rows = rows_of(book["Feasibility"])
+    assert rows[0]["train"] == "1001"
+    assert (rows[0]["verdict"], rows[0]["late at worst [s]"], rows[0]["main cause"]) == ("infeasible", 75.0, "low voltage")
+    assert rows[0]["where it is latest"] == "Alfa"
+    assert {row["verdict"] for row in rows[1:]} == {"feasible"}
+    assert [row["quality index (running-time ratio)"] > 1.0 for row in rows] == [True] * 4
+    assert len(book["Feasibility"].conditional_formatting) >= 3
+
+
+def test_parts_of_delays_add_up(book):
+    rows = rows_of(book["Delays"])
+    assert len(rows) == 8
+    for row in rows:
+        parts = [row[key] or 0.0 for key in row if key.endswith("[s]") and not key.startswith(("delay [s]", "first arose"))]
+        assert sum(parts) == pytest.approx(row["delay [s]"])
+        assert sum(row[key] or 0.0 for key in row if key.startswith("first arose")) == pytest.approx(row["delay [s]"])
+    assert [row["main cause"] for row in rows if row["delay [s]"]] == ["low voltage"]
+
+
+def test_sections_tell_where_seconds_are_lost(book):
+    row = next(row for row in rows_of(book["Sections"]) if row["train"] == "1001")
+    assert row["lost to low voltage [s]"] == pytest.approx(70.0)
+    assert row["reserve [s]"] - row["lost to low voltage [s]"] == pytest.approx(row["reserve left [s]"])
+    assert (row["from"], row["to"], row["most lost at [km]"]) == ("Łódź Bravo", "Alfa", 5.5)
+
+
+def test_lost_time_by_area_and_kilometre_with_charts(book):
+    sheet = book["Lost time"]
+    assert len(sheet._charts) == 2
+    areas = rows_of(sheet, "area of")
+    total = sum(row["lost [s]"] for row in areas)
+    assert total == pytest.approx(76.0, abs=0.1)  # 70 s, and 2 s of each other train
+    assert areas == sorted(areas, key=lambda row: -row["lost [s]"])
+    kms = [row for row in sheet.iter_rows(values_only=True) if row[1] in (1.5, 5.5, 9.5) and row[3] == 4]
+    assert sum(row[2] for row in kms) == pytest.approx(total, abs=0.1)
+
+
+def test_what_would_save_it(book):
+    sheet = book["What would save it"]
+    first, second = rows_of(sheet, "kind")
+    assert (first["kind"], first["size"], first["saves it"], first["verified by a run"]) == (
+        "departure shift",
+        "+60 s",
+        "yes",
+        "yes",
+    )
+    assert (second["subject"], second["saves it"], second["lost after [s]"]) == ("=cmd()", "no", None)
+    assert sheet.cell(*next((c.row, c.column) for row in sheet.iter_rows() for c in row if c.value == "=cmd()")).data_type == "s"
+    (sensitivity,) = rows_of(sheet, "what is changed")
+    assert sensitivity["change of the seconds lost, all trains [s]"] == -6.2
+
+
+def test_a_feasible_timetable_and_a_run_that_was_not_judged(write):
+    results, scenario = make_case()
+    book = write(judged(results, scenario, {}), scenario)
+    assert "What would save it" not in book.sheetnames
+    texts = [str(row[1].value) for row in book["Cover"].iter_rows(max_col=2)]
+    assert any(text.startswith("Feasible: none of 4 trains is late; 15 s of reserve left") for text in texts)
+    assert not set(SHEETS) & set(write(results, scenario).sheetnames)
+
+
+def test_a_train_that_did_not_come_is_red_and_no_number(write):
+    results, scenario = make_case()
+    told = judged(results, scenario, LATE)
+    train = told.run["feasibility"]["trains"][0]
+    train |= {"verdict": "not finished", "late_s": None, "reserve_left_s": None, "cause": "", "why": "stuck"}
+    row = rows_of(write(told, scenario)["Feasibility"])[0]
+    assert (row["verdict"], row["late at worst [s]"], row["reserve left [s]"]) == ("not finished", None, None)
