@@ -1,9 +1,14 @@
 """``tractionpower import``: what it says, writes and returns."""
 
+import sys
+import types
+from pathlib import Path
+
 import pytest
 from train_study import write_train_study
 
 from tractionpower.cli import main
+from tractionpower.io.imports.imported import Imported, Notes
 
 PLAN = "train,station,arrival,departure\n11,A,,06:00\n11,B,06:03,06:03\n11,C,06:07,\n"
 
@@ -50,6 +55,26 @@ def test_problems_are_1_and_nothing_is_written(tmp_path, plan, capsys):
     assert "did you mean local?" in told
     assert "2 errors; nothing was written" in told
     assert not (tmp_path / "new").exists()
+
+
+def test_options_reach_the_importer_by_its_own_names(monkeypatch):
+    seen = {}
+
+    def read(source, **options):
+        seen.update(options)
+        return Imported({"line.yaml": "format: 1\n"}, Notes(repaired=["a time"]))
+
+    monkeypatch.setitem(sys.modules, "tractionpower.io.imports.gtfs", types.SimpleNamespace(read_gtfs=read))
+    given = ["--repair", "--routes", "1, 2", "--dwell", "25", "--stops", "places.csv", "--stop-tolerance", "80"]
+    assert main(["import", "gtfs", "plan.csv", "feed", *given]) == 0
+    assert seen == {
+        "repair": True,
+        "routes": ("1", "2"),
+        "min_dwell_s": 25.0,
+        "stops": Path("places.csv"),
+        "stop_tolerance_m": 80.0,
+    }
+    assert Path("feed/line.yaml").is_file()
 
 
 @pytest.mark.parametrize(

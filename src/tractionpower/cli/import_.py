@@ -13,27 +13,39 @@ if TYPE_CHECKING:
     from tractionpower.io.imports.imported import Notes
 
 
-def import_(  # noqa: PLR0917 - options of the command line
+def import_(  # noqa: PLR0917 - typer makes options of them
     kind: Annotated[str, typer.Argument(metavar="KIND", help="gtfs, timetable (CSV, Excel), ttobench, trainruns, railtoolkit.")],
     source: Annotated[Path, typer.Argument(metavar="SRC", help="The file or folder to read.")],
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of the study that is written.")],
     repair: Annotated[bool, typer.Option("--repair", help="Mend what is wrong where it can be, and say what.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Write into a folder with files; those of the same name go.")] = False,
-    date: Annotated[str | None, typer.Option("--date", help="gtfs: the day of operation, YYYY-MM-DD.")] = None,
-    day: Annotated[str | None, typer.Option("--day", help="gtfs: a day of the week, mon to sun.")] = None,
-    routes: Annotated[str | None, typer.Option("--routes", metavar="ID,...", help="gtfs: routes; left out: rail.")] = None,
-    stops: Annotated[Path | None, typer.Option("--stops", metavar="FILE.csv", help="gtfs: places that override.")] = None,
+    train: Annotated[
+        str | None, typer.Option("--train", metavar="ID", help="Train of runs that name none; ttobench, railtoolkit: its file.")
+    ] = None,
+    dwell: Annotated[
+        float | None, typer.Option("--dwell", metavar="S", min=0, help="gtfs, timetable: shortest dwell at stops [s].")
+    ] = None,
     line: Annotated[
         str | None, typer.Option("--line", metavar="STUDY", help="timetable: study with its line and supply.")
     ] = None,
-    train: Annotated[str | None, typer.Option("--train", metavar="ID", help="Train of runs that name none.")] = None,
     tracks: Annotated[
         str | None, typer.Option("--tracks", metavar="T1,T2", help="timetable: tracks of rising and falling kilometres.")
     ] = None,
     sheet: Annotated[str | None, typer.Option("--sheet", help="timetable: the only sheet to read.")] = None,
-    dwell: Annotated[
-        float | None, typer.Option("--dwell", metavar="S", min=0, help="Shortest dwell at stops that have none [s].")
+    date: Annotated[str | None, typer.Option("--date", help="gtfs: the day of operation, YYYY-MM-DD.")] = None,
+    day: Annotated[str | None, typer.Option("--day", help="gtfs: a day of the week, mon to sun.")] = None,
+    routes: Annotated[str | None, typer.Option("--routes", metavar="ID,...", help="gtfs: routes; left out: all by rail.")] = None,
+    agencies: Annotated[str | None, typer.Option("--agencies", metavar="ID,...", help="gtfs: agencies; left out: all.")] = None,
+    stops: Annotated[str | None, typer.Option("--stops", metavar="FILE.csv", help="gtfs: places of stops that override.")] = None,
+    double: Annotated[
+        str | None, typer.Option("--double", metavar="A..B,...", help="gtfs: stretches of double track, or all, or none.")
     ] = None,
+    speed: Annotated[float | None, typer.Option("--speed", metavar="KMH", help="gtfs: speed limit of the line [km/h].")] = None,
+    stop_tolerance: Annotated[
+        float | None, typer.Option("--stop-tolerance", metavar="M", help="gtfs: how far a stop may lie off the shape [m].")
+    ] = None,
+    name: Annotated[str | None, typer.Option("--name", help="gtfs: name of the line.")] = None,
+    track: Annotated[str | None, typer.Option("--track", metavar="FILE", help="ttobench: file of a journey's track.")] = None,
 ) -> None:
     """Read lines, trains and timetables of other formats into a study."""
     from tractionpower.cli.messages import DONE, INPUT_ERRORS, has_errors, summary, tell, tell_problems
@@ -42,8 +54,9 @@ def import_(  # noqa: PLR0917 - options of the command line
 
     _refuse_files(folder, force or kind not in KINDS or KINDS[kind].adds)
     options = {
-        "repair": repair, "date": date, "day": day, "routes": routes, "stops": stops, "line": line, "train": train,
-        "tracks": tracks, "sheet": sheet, "dwell_s": dwell,
+        "repair": repair, "train": train, "dwell": dwell, "line": line, "tracks": tracks, "sheet": sheet, "date": date, "day": day,
+        "routes": routes, "agencies": agencies, "stops": stops, "double": double, "speed": speed,
+        "stop-tolerance": stop_tolerance, "name": name, "track": track,
     }  # fmt: skip
     imported = read_source(kind, source, folder, options)
     notes = imported.notes

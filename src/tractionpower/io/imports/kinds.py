@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-import inspect
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,33 +12,75 @@ from tractionpower.errors import UsageError
 from tractionpower.io.imports.imported import Imported
 from tractionpower.io.wording import did_you_mean, printable, shown
 
+Option = tuple[str, Callable[[Any], Any]]
+"""Name of an argument, and what makes its value of that of the command line."""
+
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """An importer: its module and function, what it reads in words, and whether it adds to a folder that holds a study."""
+    """An importer.
+
+    Attributes
+    ----------
+    module, function
+        Where it is.
+    options
+        Its options by their names on the command line.
+    adds
+        Whether it adds to a folder that holds a study, and is told which.
+    """
 
     module: str
     function: str
-    words: str
+    options: Mapping[str, Option]
     adds: bool = False
 
 
-KINDS = {
-    "gtfs": Kind("gtfs", "read_gtfs", "a GTFS feed, a folder or a .zip: line, stations and timetable"),
-    "timetable": Kind(
-        "table_timetables", "read_table_timetable", "a timetable as CSV or Excel, for a line that exists", adds=True
+def _listed(text: str) -> tuple[str, ...]:
+    return tuple(word for word in (part.strip() for part in text.split(",")) if word)
+
+
+_RAILTOOLKIT: Mapping[str, Option] = {"repair": ("repair", bool), "train": ("train", Path)}
+
+KINDS: Mapping[str, Kind] = {
+    "gtfs": Kind(
+        "gtfs",
+        "read_gtfs",
+        {
+            "repair": ("repair", bool),
+            "date": ("date", str),
+            "day": ("day", str),
+            "routes": ("routes", _listed),
+            "agencies": ("agencies", _listed),
+            "stops": ("stops", Path),
+            "train": ("train", str),
+            "dwell": ("min_dwell_s", float),
+            "speed": ("speed_kmh", float),
+            "double": ("double", _listed),
+            "stop-tolerance": ("stop_tolerance_m", float),
+            "name": ("name", str),
+        },
     ),
-    "ttobench": Kind("ttobench", "read_ttobench", "a track, or a track and a train, of TTOBench (JSON)"),
-    "trainruns": Kind("railtoolkit", "read_trainruns", "a running path and a train of TrainRuns (YAML)"),
-    "railtoolkit": Kind("railtoolkit", "read_railtoolkit", "paths and rolling stock of railtoolkit (YAML)"),
+    "timetable": Kind(
+        "table_timetables",
+        "read_table_timetable",
+        {
+            "line": ("line", str),
+            "train": ("train", str),
+            "tracks": ("tracks", str),
+            "sheet": ("sheet", str),
+            "dwell": ("dwell_s", float),
+        },
+        adds=True,
+    ),
+    "ttobench": Kind("ttobench", "read_ttobench", {**_RAILTOOLKIT, "track": ("track", Path)}),
+    "trainruns": Kind("railtoolkit", "read_railtoolkit", _RAILTOOLKIT),  # its files are of railtoolkit's format
+    "railtoolkit": Kind("railtoolkit", "read_railtoolkit", _RAILTOOLKIT),
 }
 """Kinds of sources by name."""
 
-OPTIONS = {"dwell_s": "--dwell"}
-"""Options whose name on the command line is not that of the argument."""
 
-
-def read_source(kind: str, source: Path, folder: Path, options: dict[str, Any]) -> Imported:
+def read_source(kind: str, source: Path, folder: Path, options: Mapping[str, Any]) -> Imported:
     """Read a source for a folder.
 
     Parameters
@@ -48,7 +90,7 @@ def read_source(kind: str, source: Path, folder: Path, options: dict[str, Any]) 
     source, folder
         The file or folder to read, and the folder that the files are for.
     options
-        What the user chose; those left out are None or False. The importer takes what its function names.
+        What the user chose, by the names of the command line; those left out are None or False.
 
     Raises
     ------
@@ -60,12 +102,16 @@ def read_source(kind: str, source: Path, folder: Path, options: dict[str, Any]) 
         raise UsageError("; ".join(part for part in (f"no kind {shown(kind)}", hint, f"kinds: {', '.join(KINDS)}") if part))
     if not source.exists():
         raise UsageError(f"there is no file or folder {printable(str(source))}")
-    read = getattr(importlib.import_module(f"tractionpower.io.imports.{KINDS[kind].module}"), KINDS[kind].function)
-    taken = inspect.signature(read).parameters
-    given = {name: value for name, value in options.items() if value is not None and value is not False}
-    for name in given:
-        if name not in taken:
-            raise UsageError(f"{OPTIONS.get(name, '--' + name)} is no option of kind {kind}")
-    where = (source, folder) if "folder" in taken else (source,)
-    imported: Imported = read(*where, **given)
+    found = KINDS[kind]
+    given: dict[str, Any] = {}
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        if name not in found.options:
+            known = ", ".join(f"--{each}" for each in found.options)
+            raise UsageError(f"--{name} is no option of kind {kind}; it has {known}")
+        argument, made = found.options[name]
+        given[argument] = made(value)
+    read = getattr(importlib.import_module(f"tractionpower.io.imports.{found.module}"), found.function)
+    imported: Imported = read(source, folder, **given) if found.adds else read(source, **given)
     return imported
