@@ -19,6 +19,7 @@ COMMANDS = [
     ["check"],
     ["journey"],
     ["curves"],
+    ["feasibility"],
     ["report"],
     ["export"],
     ["import"],

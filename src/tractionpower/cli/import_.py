@@ -54,8 +54,8 @@ def import_(  # noqa: PLR0917 - typer makes options of them
 
     _refuse_files(folder, force or kind not in KINDS or KINDS[kind].adds)
     options = {
-        "repair": repair, "train": train, "dwell": dwell, "line": line, "tracks": tracks, "sheet": sheet, "date": date, "day": day,
-        "routes": routes, "agencies": agencies, "stops": stops, "double": double, "speed": speed,
+        "repair": repair, "train": train, "dwell": dwell, "line": line, "tracks": tracks, "sheet": sheet, "date": date,
+        "day": day, "routes": routes, "agencies": agencies, "stops": stops, "double": double, "speed": speed,
         "stop-tolerance": stop_tolerance, "name": name, "track": track,
     }  # fmt: skip
     imported = read_source(kind, source, folder, options)
