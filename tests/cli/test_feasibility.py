@@ -1,6 +1,5 @@
 """``tractionpower feasibility``: what it says first, writes and returns."""
 
-import sys
 import types
 from pathlib import Path
 
@@ -12,6 +11,8 @@ from train_study import FILES, write_train_study
 from tractionpower.cli import main
 from tractionpower.cli.feasibility_summary import headline, show
 from tractionpower.results.results import Results
+from tractionpower.studies.remedies import remedy
+from tractionpower.studies.remedies import search as searching
 
 TIGHT = FILES["timetable.yaml"].replace('arrival: "06:06:00"}', 'arrival: "06:05:10"}')
 LOOSE = FILES["timetable.yaml"].replace('"06:03:00", departure: "06:03:20"', '"06:04:00", departure: "06:04:20"')
@@ -38,10 +39,8 @@ def search(monkeypatch):
             sensitivities="sensitivities", tried=words["tried"], interrupted=words["interrupted"], notes=tuple(words["notes"])
         )
 
-    module = types.ModuleType("tractionpower.studies.remedies")
-    module.search = found
-    module.as_notes = lambda items: REMEDIES["sensitivities" if items == "sensitivities" else "remedies"]
-    monkeypatch.setitem(sys.modules, "tractionpower.studies.remedies", module)
+    monkeypatch.setattr(searching, "search", found)
+    monkeypatch.setattr(remedy, "as_notes", lambda items: REMEDIES["sensitivities" if items == "sensitivities" else "remedies"])
     return calls
 
 
@@ -92,7 +91,7 @@ def test_results_are_kept_when_the_search_breaks_off(study, search, monkeypatch)
         raise KeyboardInterrupt
 
     write_train_study(study, timetable=TIGHT)
-    monkeypatch.setattr(sys.modules["tractionpower.studies.remedies"], "search", broken)
+    monkeypatch.setattr(searching, "search", broken)
     assert main(["feasibility", "six", "--no-reports"]) == 3
     assert Results.open("reports/six-feasibility").run["feasibility"]["verdict"] == "infeasible"
 

@@ -107,7 +107,8 @@ def _searched(scenario: Scenario, judgement: Judgement, writer: RunWriter, wante
     outcome = judgement.outcome
     try:
         if wanted or (wanted is None and judgement.verdict != "feasible"):
-            from tractionpower.studies.remedies import as_notes, search
+            from tractionpower.studies.remedies.remedy import as_notes
+            from tractionpower.studies.remedies.search import search
 
             with _bar("searching what would save it") as update:
                 remedies = search(scenario, judgement, update)
