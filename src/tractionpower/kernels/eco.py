@@ -1,0 +1,339 @@
+"""Driving with the least energy for a running time: dynamic programming over the distance with a price of time.
+
+For a price lambda of time the plan minimises (Howlett and Pudney 1995, energy-efficient train control, in Lagrange's form)
+
+    J = sum over stages of  E + lambda t,      M (w' - w) / 2 = (F - B - W) ds,      t = 2 ds / (v + v'),      w = v2
+
+with E the net energy at the pantograph and W the resistance at the middle of the stage. In a stage w is linear in the
+distance, as in the pieces of a speed ceiling. The best controls are greatest effort, holding the speed, coasting, the electric
+brake, and the service brake (Pontryagin's principle; recalled from Scheepmaker, Goverde and Kroon 2017); efforts between are
+tried as well, because the efficiency of a drive may depend on its load. What each control costs and where it leads does not
+depend on lambda, so it is found once (`lay_choices`), and a price takes one sweep over the table (`sweep`). The value is
+interpolated between levels of w; the trajectory itself (`follow`) is not bound to levels.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tractionpower.kernels.effort import adhesion_limit, efficiency_at, greatest_effort
+from tractionpower.kernels.jit import inlined, njit
+from tractionpower.kernels.pantograph import auxiliary_current, current_limit
+from tractionpower.kernels.series_motors import choose_notch, lowest_notch, notch_below
+from tractionpower.kernels.traction import permitted_effort, traction
+from tractionpower.kernels.train_tables import INVERTER, SERIES_MOTORS
+from tractionpower.kernels.wayside import additional_resistance
+
+FULL, PART, HOLD, COAST, ELECTRIC, SERVICE = range(6)
+"""Controls in a stage; all are clipped to the ceiling, which ends in braking where it falls."""
+
+CONTROLS = 6
+
+MODES = 4
+"""Greatest effort; holding or some effort; coasting; braking."""
+
+SHARES = 8
+"""Shares of the greatest effort between which the power from the line is taken as linear."""
+
+FULL_N, BRAKE_N, FIRST_POWER = 0, 1, 2
+COLUMNS = FIRST_POWER + SHARES + 1
+"""Columns of a drive over speed: greatest effort, electric brake [N], power from the line at shares of the effort [W]."""
+
+STAGE = np.dtype(
+    [
+        ("from_m", "f8"),
+        ("length_m", "f8"),
+        ("constant_n", "f8"),  # mean resistance by gradient, curves, tunnels
+        ("drag", "f8"),  # what tunnels add to c [N s2/m2]
+        ("service_mps2", "f8"),  # deceleration of the service brake, gradient included
+        ("drive", "i8"),  # table of the drive
+        ("part", "i8"),  # price of time that holds
+    ]
+)
+"""A stage of the way."""
+
+ECO = np.dtype(
+    [
+        ("inertia_kg", "f8"),
+        ("a_n", "f8"),
+        ("b_ns_per_m", "f8"),
+        ("c_ns2_per_m2", "f8"),
+        ("own_w", "f8"),  # auxiliaries, which braking feeds first
+        ("gain", "f8"),  # efficiency of the electric brake where it feeds back, else 0
+        ("back", "f8"),  # share of what is fed back that counts
+        ("slow_w", "f8"),  # square of the lowest cruising speed
+        ("dv", "f8"),  # between rows of the drive, and between levels of the value
+        ("level_v", "f8"),
+    ]
+)
+"""What the planner needs of a train."""
+
+_CRAWL_MPS = 0.05
+_LEAST_W = 1e-4
+
+
+@njit
+def lay_slopes(tables, k, movers, stages):
+    """Fill resistances and braking rates of `stages` for train `k`; `movers` holds one record for the search of knots."""
+    train, mover = tables.trains[k], movers[0]
+    for i in range(stages.shape[0]):
+        length = stages[i].length_m
+        constant, drag = additional_resistance(tables, train, mover, stages[i].from_m + 0.5 * length, length)
+        stages[i].constant_n, stages[i].drag = constant, drag
+        rate = train.service_mps2 + constant / train.inertia_kg
+        stages[i].service_mps2 = max(rate, 0.1 * train.service_mps2)
+
+
+@njit
+def tabulate_drive(tables, k, movers, lines, dv, drive):
+    """Tabulate effort, electric brake and power from the line of train `k` over speed.
+
+    Parameters
+    ----------
+    movers : ndarray of MOVER
+        One record, in which series motors choose their notches.
+    lines : tuple
+        Voltage [V] and largest train current that the line allows [A]; without voltage the train has neither effort nor
+        brake that feeds back.
+    dv : float
+        Speed between rows of `drive` [m/s].
+    drive : ndarray
+        Rows of `COLUMNS` values, filled.
+    """
+    train, mover, u = tables.trains[k], movers[0], lines[0]
+    drive[:] = 0.0
+    if not u > 0.0:
+        return
+    mover.notch, mover.notch_since_s, mover.voltage_v, mover.below = 0, -np.inf, u, -1
+    limit, _ = current_limit(train, u, lines[1])
+    free = max(limit - auxiliary_current(train, u), 0.0)
+    for n in range(drive.shape[0]):
+        v = max(n * dv, _CRAWL_MPS)
+        mover.v_mps = v
+        if train.drive == SERIES_MOTORS:
+            mover.notch = choose_notch(tables, train, mover, 0.0, free)
+        effort, current, _, _ = permitted_effort(tables, train, mover, v, lines)
+        drive[n, FULL_N], drive[n, FIRST_POWER + SHARES] = effort, u * current
+        if v > train.brake_from_mps:
+            drive[n, BRAKE_N] = min(train.brake_n, train.brake_w / v, adhesion_limit(train, v))
+        for share in range(1, SHARES):
+            drive[n, FIRST_POWER + share] = _power_at(tables, train, mover, lines, (v, effort), share / SHARES)
+
+
+@njit
+def _power_at(tables, train, mover, lines, full, share):
+    """Return the power from the line [W] at a share of the full effort: `full` holds speed [m/s] and that effort [N]."""
+    v, effort = full
+    need_w, midpoint = share * effort * v, (v, 0.0, 0.0, v)
+    if need_w <= 0.0:
+        return 0.0
+    if train.drive == INVERTER:
+        greatest, _, _ = greatest_effort(tables, train, mover, v)
+        return need_w / efficiency_at(tables, train, v, share * effort / greatest)
+    held = mover.notch
+    if train.drive == SERIES_MOTORS:
+        mover.notch = lowest_notch(tables, train, mover, held, need_w, midpoint)
+        mover.below = notch_below(tables, train, mover, mover.notch, need_w, midpoint)
+    _, current, _, _, _ = traction(tables, train, mover, need_w, lines, midpoint)
+    mover.notch = held
+    return lines[0] * current
+
+
+@inlined
+def _row(drive, eco, v):
+    """Return the row of a drive below the speed `v`, and the share of the next one."""
+    x = v / eco.dv
+    n = min(int(x), drive.shape[0] - 2)
+    return n, min(x - n, 1.0)
+
+
+@inlined
+def _at(drive, row, column):
+    n, x = row
+    return drive[n, column] + x * (drive[n + 1, column] - drive[n, column])
+
+
+@inlined
+def _resistance(eco, stage, v):
+    return eco.a_n + stage.constant_n + (eco.b_ns_per_m + (eco.c_ns2_per_m2 + stage.drag) * v) * v
+
+
+@inlined
+def _led_to(drive, eco, stage, w, share, column):
+    """Return the w [m2/s2] to which a share of a column's effort leads: the midpoint rule, by two predictions."""
+    factor = 2.0 * stage.length_m / eco.inertia_kg
+    after = w
+    for _ in range(2):
+        v = np.sqrt(max(0.5 * (w + after), 0.0))
+        force = share * _at(drive, _row(drive, eco, v), column) if share != 0.0 else 0.0
+        after = max(w + factor * (force - _resistance(eco, stage, v)), 0.0)
+    v = np.sqrt(0.5 * (w + after))
+    force = share * _at(drive, _row(drive, eco, v), column) if share != 0.0 else 0.0
+    return w + factor * (force - _resistance(eco, stage, v))
+
+
+@inlined
+def _reach(drive, eco, stage, w, ceiling):
+    """Return the w at the end of a stage by each control, clipped to the ceiling and the lowest cruising speed."""
+    high = min(max(_led_to(drive, eco, stage, w, 1.0, FULL_N), _LEAST_W), ceiling)
+    coast = _led_to(drive, eco, stage, w, 0.0, FULL_N)
+    low = min(max(w - 2.0 * stage.service_mps2 * stage.length_m, eco.slow_w), high)
+    electric = coast
+    if eco.gain > 0.0:
+        electric = _led_to(drive, eco, stage, w, -1.0, BRAKE_N)
+    hold = min(max(w, low), high)
+    return high, 0.5 * (hold + high), hold, min(max(coast, low), high), min(max(electric, low), high), low
+
+
+@inlined
+def _price(drive, eco, stage, w, after):
+    """Return net energy at the pantograph without auxiliaries [J] and time [s] of a stage from `w` to `after`."""
+    speeds = np.sqrt(w) + np.sqrt(after)
+    spent = 2.0 * stage.length_m / speeds if speeds > 0.0 else 1e6
+    v = 0.5 * speeds
+    force = eco.inertia_kg * (after - w) / (2.0 * stage.length_m) + _resistance(eco, stage, np.sqrt(0.5 * (w + after)))
+    row = _row(drive, eco, v)
+    if force > 0.0:
+        full = _at(drive, row, FULL_N)
+        x = min(force / full, 1.0) * SHARES if full > 0.0 else 0.0
+        n = min(int(x), SHARES - 1)
+        below = _at(drive, row, FIRST_POWER + n)
+        return (below + (x - n) * (_at(drive, row, FIRST_POWER + n + 1) - below)) * spent, spent
+    gained = eco.gain * min(-force, _at(drive, row, BRAKE_N)) * v
+    own = min(gained, eco.own_w)
+    return -(own + eco.back * (gained - own)) * spent, spent
+
+
+@inlined
+def _cell(eco, w, ceiling, levels):
+    """Return where `w` lies between levels, as the number of the level below plus the share of the next."""
+    v = np.sqrt(w) / eco.level_v
+    j = min(int(v), levels - 2)
+    below, above = (j * eco.level_v) ** 2, min(((j + 1) * eco.level_v) ** 2, ceiling)
+    if above <= below:
+        return float(j)
+    return j + min(max((w - below) / (above - below), 0.0), 0.999999)
+
+
+@njit
+def lay_choices(stages, ceilings, drives, eco_of, choices):
+    """Fill what every control costs from every level of every stage.
+
+    Parameters
+    ----------
+    stages, ceilings
+        Stages, and squares of the ceiling at their ends [m2/s2], one more.
+    drives
+        Tables of the drive, by `STAGE.drive`.
+    eco_of
+        One record of ECO.
+    choices
+        By stage, level, control: energy [J], time [s], place between levels at the end; levels above the ceiling stay empty.
+    """
+    eco, levels = eco_of[0], choices.shape[1]
+    for i in range(stages.shape[0]):
+        stage, drive, ceiling = stages[i], drives[stages[i].drive], ceilings[i + 1]
+        for j in range(levels):
+            w = min((j * eco.level_v) ** 2, ceilings[i])
+            reached = _reach(drive, eco, stage, w, ceiling)
+            for c in range(CONTROLS):
+                energy, spent = _price(drive, eco, stage, w, reached[c])
+                choices[i, j, c, 0], choices[i, j, c, 1] = energy, spent
+                choices[i, j, c, 2] = _cell(eco, reached[c], ceiling, levels)
+            if w >= ceilings[i]:
+                break
+
+
+@inlined
+def _mode(control):
+    return 0 if control == FULL else 1 if control <= HOLD else 2 if control == COAST else 3
+
+
+@njit
+def sweep(stages, ceilings, eco_of, choices, prices, switch_s, value):
+    """Fill the least `value` [J] at the start of every stage, by mode of the stage before and level.
+
+    Parameters
+    ----------
+    prices : ndarray
+        Prices of time by part [W].
+    switch_s : float
+        What a change of the mode costs, as a time [s]. Holding a speed and running up and down about it need nearly the same
+        energy, so without this cost the control would chatter.
+    """
+    eco, levels, last = eco_of[0], choices.shape[1], stages.shape[0]
+    value[last] = 0.0
+    for i in range(last - 1, -1, -1):
+        price = prices[stages[i].part]
+        change = price * switch_s
+        for j in range(levels):
+            best = np.inf
+            for mode in range(MODES):
+                value[i, mode, j] = np.inf
+            for c in range(CONTROLS):
+                x, mode = choices[i, j, c, 2], _mode(c)
+                n = int(x)
+                ahead = value[i + 1, mode, n] + (x - n) * (value[i + 1, mode, n + 1] - value[i + 1, mode, n])
+                cost = choices[i, j, c, 0] + price * choices[i, j, c, 1] + ahead
+                value[i, mode, j] = min(value[i, mode, j], cost)
+                best = min(best, cost)
+            for mode in range(MODES):
+                value[i, mode, j] = min(value[i, mode, j], best + change)
+            if (j * eco.level_v) ** 2 >= ceilings[i]:
+                for mode in range(MODES):
+                    for above in range(j + 1, levels):
+                        value[i, mode, above] = value[i, mode, j]
+                break
+
+
+@njit
+def follow(stages, ceilings, drives, eco_of, prices, value, switch_s, squares):
+    """Run the best way through the stages and return its energy [J]; without `value` (no rows) the greatest effort.
+
+    Parameters
+    ----------
+    squares : ndarray
+        Squares of the speed at the ends of stages [m2/s2]; the first is given.
+    """
+    eco, before, total = eco_of[0], -1, 0.0
+    for i in range(stages.shape[0]):
+        stage, drive, ceiling, w = stages[i], drives[stages[i].drive], ceilings[i + 1], squares[i]
+        reached = _reach(drive, eco, stage, w, ceiling)
+        best, chosen, paid = np.inf, FULL, 0.0
+        for c in range(CONTROLS):
+            energy, spent = _price(drive, eco, stage, w, reached[c])
+            if value.shape[0] == 0:
+                paid = energy
+                break
+            price, mode = prices[stage.part], _mode(c)
+            x = _cell(eco, reached[c], ceiling, value.shape[2])
+            n = int(x)
+            ahead = value[i + 1, mode, n] + (x - n) * (value[i + 1, mode, n + 1] - value[i + 1, mode, n])
+            cost = energy + price * spent + ahead
+            if mode != before:
+                cost += price * switch_s
+            if cost < best:
+                best, chosen, paid = cost, c, energy
+        squares[i + 1], before = reached[chosen], _mode(chosen)
+        total += paid
+    return total
+
+
+@njit
+def cost_of(stages, drives, eco_of, squares, efforts, shares):
+    """Return the energy [J] of a way given by its `squares`.
+
+    Fills the mean force of each stage [N], brakes negative, and its share of the greatest effort, 0 where it is not positive.
+    """
+    eco, total = eco_of[0], 0.0
+    for i in range(stages.shape[0]):
+        stage, drive = stages[i], drives[stages[i].drive]
+        energy, _ = _price(drive, eco, stage, squares[i], squares[i + 1])
+        change = eco.inertia_kg * (squares[i + 1] - squares[i]) / (2.0 * stage.length_m)
+        efforts[i] = change + _resistance(eco, stage, np.sqrt(0.5 * (squares[i] + squares[i + 1])))
+        full = _at(drive, _row(drive, eco, 0.5 * (np.sqrt(squares[i]) + np.sqrt(squares[i + 1]))), FULL_N)
+        shares[i] = 0.0
+        if efforts[i] > 0.0:
+            shares[i] = efforts[i] / full if full > 0.0 else 1.0
+        total += energy
+    return total
