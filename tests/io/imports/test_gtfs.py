@@ -169,6 +169,7 @@ def test_blocks_become_rotations(tmp_path):
     found = read(tmp_path, trips=added, stop_times=[*given["stop_times"], *times])
     assert plain(found, "timetable.yaml")["rotations"] == [{"id": "x", "runs": ["T1", "T2", "T5"]}]
     assert any("T5 to T6" in row for row in found.notes.ignored)
+    assert [problem for problem in errors(tmp_path, found) if problem.severity == "error"] == []
 
 
 def test_a_passing_is_no_stop(tmp_path):

@@ -51,8 +51,8 @@ def line_text(name: str, tracks: Tracks, names: dict[str, str], ids: dict[str, s
             {"from": {"track": a[0], "km": a[1]}, "to": {"track": b[0], "km": b[1]}} for a, b in sorted(tracks.connections)
         ]
     head = (
-        "# Stations by their places on the shapes of the feed. Speed limits are assumed; gradients and curves are not known:\n"
-        "# level and straight.\n"
+        "# Stations by their places on the shapes of the feed. Speed limits are assumed; no gradients and curves are known,\n"
+        "# so it is level and straight.\n"
     )
     return head + document(data)
 
