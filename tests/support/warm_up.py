@@ -35,6 +35,7 @@ def _run_trains() -> None:
     from tractionpower.movement.journey import theoretical_journeys  # noqa: PLC0415
 
     scenario = make_trains(0.2)
+    theoretical_journeys(make_trains(2.0, end="stop", driving={"kind": "reserve", "percent": 5.0}))
     for form in ("time", "speed"):
         theoretical_journeys(scenario, form=form)
     drive_curves(scenario.trains[0], scenario.vehicles, scenario.limits)

@@ -15,6 +15,7 @@ from tractionpower.model.timetable import TrainRun
 from tractionpower.movement.compile import Movement, PlannedRun, compile_trains
 from tractionpower.movement.dues import Times, dues_of
 from tractionpower.movement.formation import KMH
+from tractionpower.movement.optimal_plans import Saving, Voltage, optimal_plans
 from tractionpower.movement.plans import Plan, Rows, lay_plans
 from tractionpower.movement.rule_plans import hold_floor, rule_plan
 
@@ -26,7 +27,7 @@ LONGEST_S = 48 * 3600.0
 _BLOCK = 4096
 
 
-def compile_driven(scenario: Scenario, runs: Sequence[str] | None = None, voltage_v: float | None = None) -> Movement:
+def compile_driven(scenario: Scenario, runs: Sequence[str] | None = None, voltage: Voltage | None = None) -> Movement:
     """Return the trains of a scenario with the plans by which they are driven while they are on time.
 
     Parameters
@@ -35,19 +36,20 @@ def compile_driven(scenario: Scenario, runs: Sequence[str] | None = None, voltag
         The scenario, of which `check_movement` has found no errors.
     runs
         Identifiers of the runs to take; left out: all.
-    voltage_v
-        Voltage for which plans are made [V]; left out: the nominal one.
+    voltage
+        Voltage for which plans are made, by which they come to their calls on time: a number [V], or points (distance of the
+        front from the start of the route [m], voltage [V]); left out: the nominal one.
     """
     movement = compile_trains(scenario, runs)
     driving = {k: driving_of(item.run, scenario) for k, item in enumerate(movement.runs)}
     chosen = {k: how for k, how in driving.items() if not isinstance(how, FlatOut)}
     if not chosen:
         return movement
-    volts = movement.voltages.u_n if voltage_v is None else voltage_v
-    plans = {k: Plan(*rows, np.zeros(0, POINT), chosen[k].late_after_s) for k, rows in _rows(movement, chosen).items()}
-    floors = {
-        k: how.coast_down_to_kmh / KMH for k, how in chosen.items() if isinstance(how, Rules) and how.coast_down_to_kmh > 0.0
-    }
+    volts: Voltage = movement.voltages.u_n if voltage is None else voltage
+    rows = _rows(movement, chosen, volts)
+    plans = {k: Plan(*rows[k], np.zeros(0, POINT), how.late_after_s) for k, how in chosen.items()}
+    floors = {k: how.coast_down_to_kmh / KMH for k, how in chosen.items() if isinstance(how, Rules)}
+    floors = {k: floor for k, floor in floors.items() if floor > 0.0}
     for k, alone in _run_alone(lay_plans(movement, plans), floors, volts):
         pieces, caps = hold_floor(plans[k], alone.rows, floors[k])
         plans[k] = replace(plans[k], pieces=pieces, caps=caps)
@@ -64,9 +66,11 @@ def driving_of(run: TrainRun, scenario: Scenario) -> Driving:
     return scenario.timetable.driving if scenario.timetable.driving is not None else FlatOut(kind="flat_out")
 
 
-def _rows(movement: Movement, chosen: Mapping[int, Driving]) -> dict[int, tuple[Rows, Rows]]:
+def _rows(movement: Movement, chosen: Mapping[int, Rules | Saving], volts: Voltage) -> dict[int, tuple[Rows, Rows]]:
     """Return ceiling and caps of the plans."""
-    return {k: rule_plan(movement.runs[k], how) for k, how in chosen.items() if isinstance(how, Rules)}
+    rules = {k: rule_plan(movement.runs[k], how) for k, how in chosen.items() if isinstance(how, Rules)}
+    saving = [(k, how) for k, how in chosen.items() if not isinstance(how, Rules)]
+    return rules | (optimal_plans(movement, saving, volts) if saving else {})
 
 
 def _has_times(item: PlannedRun) -> bool:
@@ -81,10 +85,10 @@ class _Alone:
     left_s: Times
 
 
-def _run_alone(movement: Movement, chosen: Iterable[int], volts: float) -> Iterator[tuple[int, _Alone]]:
+def _run_alone(movement: Movement, chosen: Iterable[int], volts: Voltage) -> Iterator[tuple[int, _Alone]]:
     """Run the trains of some numbers alone by their plans, which have no dues."""
     state = new_train_state(movement.tables)
-    voltage = np.array([(0.0, volts)], POINT)
+    voltage = np.array([(0.0, volts)] if isinstance(volts, int | float) else list(volts), POINT)
     for k in chosen:
         item, train = movement.runs[k], movement.tables.trains[k]
         blocks, end, start = [], OUT_OF_ROWS, item.start_s
