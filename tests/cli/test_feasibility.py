@@ -140,8 +140,15 @@ def test_the_summary_of_a_search_that_found_nothing(capsys):
     assert "nothing within the bounds saves it (73 runs)" in told
 
 
-def test_headlines():
-    trains = [{}] * 3
-    assert headline(
-        {"verdict": "feasible", "reserve_left_s": None, "tolerance_s": 1.0, "trains": trains, "late_trains": 0}
-    ).startswith("FEASIBLE: no train is late; none has a call")
+@pytest.mark.parametrize(
+    ("reserve", "words"),
+    [
+        (None, "no train is late; none has a call"),
+        (12.4, "with 12 s of reserve left"),
+        (-0.7, "only within the tolerance: 0.7 s"),
+    ],
+)
+def test_headlines(reserve, words):
+    told = {"verdict": "feasible", "reserve_left_s": reserve, "tolerance_s": 1.0, "trains": [{}] * 3, "late_trains": 0}
+    assert headline(told).startswith("FEASIBLE")
+    assert words in headline(told)

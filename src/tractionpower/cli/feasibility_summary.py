@@ -61,6 +61,9 @@ def headline(told: Mapping[str, Any]) -> str:
     reserve = told["reserve_left_s"]
     if reserve is None:
         return f"FEASIBLE: no train is late; none has a call with a planned time ({tolerance})"
+    if reserve < 0.0:
+        missing = f"{-reserve:.1f} s are missing at the tightest place"
+        return f"FEASIBLE, but only within the tolerance: {missing} ({trains} trains, {tolerance})"
     return f"FEASIBLE, with {reserve:.0f} s of reserve left at the tightest place ({trains} trains, {tolerance})"
 
 

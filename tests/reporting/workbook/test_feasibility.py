@@ -89,6 +89,7 @@ def test_what_would_save_it(book):
         "yes",
         "yes",
     )
+    assert first["as options of the command line"] == "--set 'timetable.trains[1001].calls[0].departure=06:06:00'"
     assert (second["subject"], second["saves it"], second["lost after [s]"]) == ("=cmd()", "no", None)
     assert sheet.cell(*next((c.row, c.column) for row in sheet.iter_rows() for c in row if c.value == "=cmd()")).data_type == "s"
     (sensitivity,) = rows_of(sheet, "what is changed")

@@ -57,6 +57,10 @@ def verdict_in_words(told: dict[str, Any]) -> tuple[str, str]:
     if told["verdict"] == "feasible":
         reserve = told.get("reserve_left_s")
         words = "no call has a planned time" if reserve is None else f"{reserve:.0f} s of reserve left at the tightest place"
+        if reserve is not None and reserve < 0.0:
+            words = (
+                f"{-reserve:.1f} s are missing at the tightest place, which is within the tolerance of {told['tolerance_s']:g} s"
+            )
         return f"Feasible: none of {trains} trains is late; {words}", "good"
     first = told.get("first")
     worst = f". Worst: train {first['train']}, {first['why']}" if first else ""

@@ -20,7 +20,7 @@ _COLUMNS = (
     Column("lost before, all trains [s]", "0.0"),
     Column("lost after [s]", "0.0"),
     Column("cost [points]", "0.0"),
-    Column("as --set", "beside", 50),
+    Column("as options of the command line", "beside", 56),
 )
 _SENSITIVITIES = (
     Column("what is changed", widest=24),
@@ -68,7 +68,7 @@ def _row(remedy: dict[str, Any]) -> tuple[Any, ...]:
         remedy["lost_before_s"],
         remedy["lost_after_s"],
         remedy["cost"],
-        "\n".join(remedy["changes"]),
+        " ".join(f"--set '{change}'" for change in remedy["changes"]),
     )
 
 
