@@ -1,4 +1,4 @@
-"""Draw the figures of the README anew: voltages of a day on the real line, and full coupling beside a constant voltage.
+"""Draw the figures of the README anew: voltages of a day on the real line, full coupling beside constant voltage, delays.
 
 Not part of `make docs`: these figures change with the data that ship, the reference pages with the declarations.
 """
@@ -12,6 +12,7 @@ from PIL import Image
 
 import tractionpower as tp
 from tractionpower.reporting.coupling_figure import compare_coupling
+from tractionpower.reporting.delay_graph import delay_graphs
 from tractionpower.reporting.run_data import RunData
 from tractionpower.reporting.style import save
 from tractionpower.reporting.voltage_figures import voltage_along_line
@@ -55,6 +56,13 @@ def keep(figure: Figure, name: str) -> None:
     print(f"{path}: {path.stat().st_size / 1000.0:.0f} kB")
 
 
+def draw_delays() -> Figure:
+    """Draw the train graph of the study with a weak substation, late trains by cause."""
+    scenario = tp.load("two-substations/weak.yaml")
+    return delay_graphs(RunData(tp.feasibility(scenario), scenario))["delay_graph"]
+
+
 if __name__ == "__main__":
+    keep(draw_delays(), "weak-delay-graph.png")
     keep(draw_coupling(), "cmk-coupling.png")
     keep(draw_line(), "cmk-voltage-along-line.png")
