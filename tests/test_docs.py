@@ -12,6 +12,7 @@ from tractionpower.io.conductor_files import CONDUCTORS
 from tractionpower.io.documents import read_document
 from tractionpower.io.text_files import Source
 from tractionpower.model.supply import Load, Supply
+from tractionpower.model.timetable import Timetable
 from tractionpower.supply.conductor_checks import check_conductors
 
 ROOT = Path(__file__).parents[1]
@@ -53,6 +54,15 @@ def test_the_examples_of_the_page_of_conductors_are_sound(tmp_path):
     supply = read_document(tmp_path / "supply.yaml", Supply)
     assert len(supply.contact_lines) == 4
     assert check_conductors(supply, CONDUCTORS.over_shipped(rows)) == []
+
+
+def test_the_example_of_the_page_of_driving_is_sound(tmp_path):
+    page = (ROOT / "docs" / "driving.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
+    (tmp_path / "timetable.yaml").write_text(f"format: 1\n{block}", encoding="utf-8")
+    timetable = read_document(tmp_path / "timetable.yaml", Timetable)
+    assert timetable.driving.kind == "to_time"
+    assert timetable.trains[0].driving.coast_before_stops_km == 2.0
 
 
 def keys_of(text):
