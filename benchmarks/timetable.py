@@ -12,7 +12,7 @@ from report import goal, table
 from timing import Times, take_turns
 from tractionpower.model.scenario import Scenario
 from tractionpower.movement.compile import compile_trains
-from tractionpower.movement.driven import compile_driven
+from tractionpower.movement.driving.driven import compile_driven
 
 PLAN_GOAL_S, DAY_GOAL_S, VERDICT_GOAL_S = 1.0, 5.0, 60.0
 RESERVES = (3, 8, 20)

@@ -8,8 +8,8 @@ from openpyxl import load_workbook
 from typer.main import get_command
 
 from tractionpower.cli import app, main
-from tractionpower.io.imports.headings import HEADINGS, field_of
 from tractionpower.io.imports.kinds import KINDS
+from tractionpower.io.imports.tables.headings import HEADINGS, field_of
 from tractionpower.io.scenario_files import load_scenario
 
 DOCS = Path(__file__).parents[1] / "docs"

@@ -64,7 +64,7 @@ def test_options_reach_the_importer_by_its_own_names(monkeypatch):
         seen.update(options)
         return Imported({"line.yaml": "format: 1\n"}, Notes(repaired=["a time"]))
 
-    monkeypatch.setitem(sys.modules, "tractionpower.io.imports.gtfs", types.SimpleNamespace(read_gtfs=read))
+    monkeypatch.setitem(sys.modules, "tractionpower.io.imports.gtfs.reading", types.SimpleNamespace(read_gtfs=read))
     given = ["--repair", "--routes", "1, 2", "--dwell", "25", "--stops", "places.csv", "--stop-tolerance", "80"]
     assert main(["import", "gtfs", "plan.csv", "feed", *given]) == 0
     assert seen == {

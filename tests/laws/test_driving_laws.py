@@ -9,7 +9,7 @@ from ttobench_cases import Driven
 from tractionpower.kernels.journey import ARRIVED
 from tractionpower.model.driving import Reserve
 from tractionpower.movement.compile import compile_trains
-from tractionpower.movement.optimal_plans import optimal_plans
+from tractionpower.movement.driving.optimal import optimal_plans
 
 LAW = settings(max_examples=50, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 

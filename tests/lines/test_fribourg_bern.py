@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import tractionpower
-from tractionpower.io.imports.ttobench import read_ttobench
+from tractionpower.io.imports.ttobench.reading import read_ttobench
 from tractionpower.io.text_files import write_files
 
 ROOT = Path(__file__).parents[2]

@@ -7,7 +7,7 @@ from ruamel.yaml import YAML
 from small_studies import run_in_memory
 
 import tractionpower
-from tractionpower.io.imports.gtfs import read_gtfs
+from tractionpower.io.imports.gtfs.reading import read_gtfs
 
 FOLDER = Path(__file__).parents[2] / "lines" / "wkd"
 

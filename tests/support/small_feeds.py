@@ -5,7 +5,7 @@ from typing import Any
 
 from ruamel.yaml import YAML
 
-from tractionpower.io.imports.gtfs import read_gtfs
+from tractionpower.io.imports.gtfs.reading import read_gtfs
 from tractionpower.io.imports.imported import Imported
 
 LAT = 50.0

@@ -13,7 +13,7 @@ from tractionpower.kernels.journey import run_journey
 from tractionpower.kernels.train_tables import POINT, TRAIN_ROW, new_train_state
 from tractionpower.model.scenario import Scenario
 from tractionpower.movement.compile import Movement
-from tractionpower.movement.plans import Plan, lay_plans
+from tractionpower.movement.driving.plan import Plan, lay_plans
 
 FOLDER = Path(__file__).parents[1] / "data" / "ttobench"
 TRACKS = sorted(path.stem for path in (FOLDER / "tracks").glob("*.json"))

@@ -14,7 +14,7 @@ from tractionpower.kernels.train_port import ROOM
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import Supply
 from tractionpower.movement.compile import Movement
-from tractionpower.movement.driven import compile_driven
+from tractionpower.movement.driving.driven import compile_driven
 from tractionpower.supply.characteristics import load_steps, no_load_voltage
 from tractionpower.supply.compile import Stretch, SupplyTables, compile_network
 

@@ -16,7 +16,7 @@ from tractionpower.kernels.train_tables import POINT, TRAIN_ROW, TrainState, new
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.timetable import TrainRun
 from tractionpower.movement.compile import Movement, PlannedRun
-from tractionpower.movement.driven import compile_driven
+from tractionpower.movement.driving.driven import compile_driven
 from tractionpower.movement.formation import Formation
 from tractionpower.movement.ledgers import TrainLedger, mechanical_ledger, pantograph_ledger
 

@@ -23,7 +23,7 @@ from tractionpower.model.vehicle import Train, Vehicle
 from tractionpower.movement.ceiling import LOWEST_SHARE
 from tractionpower.movement.climbing import find_stall, hard_stretches, least_braking, starting_effort_n
 from tractionpower.movement.compile import PlannedRun, Routes, ceiling_of, plan_run, train_of
-from tractionpower.movement.driving_checks import check_driving
+from tractionpower.movement.driving.checks import check_driving
 from tractionpower.movement.formation import KMH, Formation, form
 from tractionpower.movement.stock_checks import auxiliary_current_a, check_train
 from tractionpower.movement.telling import doubt, listed, unknown

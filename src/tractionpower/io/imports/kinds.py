@@ -44,7 +44,7 @@ _RAILTOOLKIT: Mapping[str, Option] = {"repair": ("repair", bool), "train": ("tra
 
 KINDS: Mapping[str, Kind] = {
     "gtfs": Kind(
-        "gtfs",
+        "gtfs.reading",
         "read_gtfs",
         {
             "repair": ("repair", bool),
@@ -62,7 +62,7 @@ KINDS: Mapping[str, Kind] = {
         },
     ),
     "timetable": Kind(
-        "table_timetables",
+        "tables.reading",
         "read_table_timetable",
         {
             "line": ("line", str),
@@ -73,9 +73,9 @@ KINDS: Mapping[str, Kind] = {
         },
         adds=True,
     ),
-    "ttobench": Kind("ttobench", "read_ttobench", {**_RAILTOOLKIT, "track": ("track", Path)}),
-    "trainruns": Kind("railtoolkit", "read_railtoolkit", _RAILTOOLKIT),  # its files are of railtoolkit's format
-    "railtoolkit": Kind("railtoolkit", "read_railtoolkit", _RAILTOOLKIT),
+    "ttobench": Kind("ttobench.reading", "read_ttobench", {**_RAILTOOLKIT, "track": ("track", Path)}),
+    "trainruns": Kind("railtoolkit.reading", "read_railtoolkit", _RAILTOOLKIT),  # its files are of railtoolkit's format
+    "railtoolkit": Kind("railtoolkit.reading", "read_railtoolkit", _RAILTOOLKIT),
 }
 """Kinds of sources by name."""
 

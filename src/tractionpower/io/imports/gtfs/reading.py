@@ -1,0 +1,249 @@
+"""GTFS to a study: the rail trips of one day as trains on the line that their shapes draw."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tractionpower.errors import Problem
+from tractionpower.io.imports.gtfs.feed import Feed, read_feed
+from tractionpower.io.imports.gtfs.network import Leg, Network, Place
+from tractionpower.io.imports.gtfs.options import GtfsOptions
+from tractionpower.io.imports.gtfs.overrides import Override, apply_overrides, read_overrides
+from tractionpower.io.imports.gtfs.patterns import Pattern, Stops, check_places, find_patterns, merge_calls, read_stops
+from tractionpower.io.imports.gtfs.texts import line_text, readme_text, study_text, supply_text, timetable_text
+from tractionpower.io.imports.gtfs.times import fill_times, mend_times, rounding_s, without_times
+from tractionpower.io.imports.gtfs.tracks import Tracks, lay_tracks
+from tractionpower.io.imports.gtfs.trains import Timed, rotations_of, train_rows
+from tractionpower.io.imports.gtfs.trips import Trip, listed, read_trips
+from tractionpower.io.imports.imported import Imported, Notes
+from tractionpower.io.wording import printable
+
+_DIFFERS_M = 300.0
+_DIFFERS = 0.2
+
+
+def read_gtfs(source: str | Path, **options: Any) -> Imported:
+    """Read the rail trips of one day from a GTFS feed.
+
+    Parameters
+    ----------
+    source
+        A folder with the files of the feed, or a zip of them.
+    options
+        Fields of `GtfsOptions`.
+
+    Returns
+    -------
+    The files of a study, none of them if there are errors; and what was read, assumed, repaired, ignored, with all problems.
+    """
+    choices, notes = GtfsOptions(**options), Notes()
+    return Imported(_texts(Path(source), choices, notes) if _are_good(choices, notes) else {}, notes)
+
+
+def _are_good(options: GtfsOptions, notes: Notes) -> bool:
+    for name, above in (("min_dwell_s", -1e-9), ("speed_kmh", 0.0), ("stop_tolerance_m", 0.0)):
+        value = getattr(options, name)
+        if not (math.isfinite(value) and value > above):
+            notes.problems.append(Problem("bad_option", "", f"{name} is {value:g}", "a number above zero"))
+    return not notes.problems
+
+
+def _failed(notes: Notes) -> bool:
+    return any(problem.severity == "error" for problem in notes.problems)
+
+
+def _texts(source: Path, options: GtfsOptions, notes: Notes) -> dict[str, str]:
+    feed = read_feed(source, notes, repair=options.repair)
+    if _failed(notes):
+        return {}
+    trips = read_trips(feed, options, notes)
+    overrides = read_overrides(options.stops, set(feed.table("stops")["stop_id"]), notes)
+    if not trips:
+        if not _failed(notes):
+            notes.problems.append(Problem("no_trips", "", "no trip of the day is left that can run"))
+        return {}
+    mend_times(trips, options, notes)
+    stops = read_stops(feed, {stop.stop for trip in trips for stop in trip.stops}, notes)
+    merge_calls(trips, stops, notes)
+    short = [trip.id for trip in trips if len(trip.stops) < 2]
+    if short:
+        found = f"{len(short)} trips stay at one station and cannot run: {listed(short)}"
+        notes.problems.append(Problem("no_way", "", found, severity="warning", place="stop_times.txt"))
+        notes.ignored.append(found)
+        trips = [trip for trip in trips if len(trip.stops) > 1]
+    check_places(trips, stops, set(overrides), options, notes)
+    if _failed(notes):
+        return {}
+    patterns = find_patterns(feed, trips, stops, options, notes)
+    _check_distances(patterns, stops, overrides, options, notes)
+    network = _network(patterns, notes)
+    if _failed(notes):
+        return {}
+    turns = [network.turns(pattern.stations) for pattern in patterns]
+    apply_overrides(overrides, stops, network, notes)
+    if any(network.turns(pattern.stations) > before for pattern, before in zip(patterns, turns, strict=True)):
+        found = "the table of stops puts stations into another order than that in which trains come to them"
+        notes.problems.append(Problem("order_of_stops", "", found, remedy="correct its kilometres", place="table of stops"))
+    tracks = lay_tracks(network, options.double, notes.problems)
+    _check_ways(patterns, network, overrides, notes)
+    if _failed(notes):
+        return {}
+    return _written(trips, stops, tracks, _name(feed, options), options, notes)
+
+
+def _name(feed: Feed, options: GtfsOptions) -> str:
+    agencies = feed.table("agency")["agency_name"]
+    return options.name or (printable(str(agencies.iloc[0])) if len(agencies) else "Line from a GTFS feed")
+
+
+def _network(patterns: Sequence[Pattern], notes: Notes) -> Network:
+    network = Network()
+    for pattern in _from_one_end(patterns):
+        network.add(pattern)
+    notes.problems += network.problems
+    trees = len({axis.tree for axis in network.axes})
+    lengths = ", ".join(f"{axis.to_km - axis.from_km:.3f} km" for axis in network.axes)
+    notes.read.append(f"{len(network.stations)} stations; lines, the longest way and its branches: {lengths}")
+    if trees > 1:
+        notes.assumed.append(f"the lines form {trees} networks that do not touch: routes can be chosen to import one of them")
+    return network
+
+
+def _from_one_end(patterns: Sequence[Pattern]) -> list[Pattern]:
+    """Return patterns, the longest first; of those about as long as the longest, direction 0 begins: it sets where km 0 is."""
+    longest = [each for each in patterns if _length(each) >= 0.99 * _length(patterns[0])]
+    first = min(longest, key=lambda each: (each.direction or "0", -_length(each)), default=None)
+    return [first, *(each for each in patterns if each is not first)] if first is not None else []
+
+
+def _length(pattern: Pattern) -> float:
+    return float(pattern.along_m[-1] - pattern.along_m[0])
+
+
+def _check_distances(
+    patterns: Sequence[Pattern], stops: Stops, overrides: dict[str, Override], options: GtfsOptions, notes: Notes
+) -> None:
+    """Tell stops off the shape, each once with its greatest distance."""
+    away: dict[str, tuple[float, str]] = {}
+    for pattern in patterns:
+        for stop, distance in zip(pattern.stops, pattern.away_m.tolist(), strict=True):
+            if distance > options.stop_tolerance_m and distance > away.get(stop, (0.0, ""))[0]:
+                away[stop] = distance, pattern.shape
+    for stop, (distance, shape) in sorted(away.items()):
+        found = f"stop {printable(stop)} ({stops.names.get(stop, '')}) lies {distance:.0f} m from shape {printable(shape)}"
+        if stop in overrides:
+            notes.read.append(f"{found}: its place is that of the table of stops")
+        elif options.repair:
+            notes.repaired.append(f"{found}: put at the nearest place of it")
+        else:
+            allowed = f"at most {options.stop_tolerance_m:g} m"
+            remedy = "give its km in the table of stops; with repair it is put at the nearest place of the shape"
+            notes.problems.append(Problem("stop_off_shape", "", found, allowed, remedy, place="stops.txt"))
+
+
+def _check_ways(patterns: Sequence[Pattern], network: Network, overrides: dict[str, Override], notes: Notes) -> None:
+    """Tell trips whose way over the axes is not that of their shape: rings, and stations that are passed twice."""
+    for pattern in patterns:
+        for k, (a, b) in enumerate(pairwise(pattern.stations)):
+            if a in overrides or b in overrides:
+                continue
+            shape_m = float(pattern.along_m[k + 1] - pattern.along_m[k])
+            line_m = sum(abs(leg.to_km - leg.from_km) for leg in network.way((a, b))) * 1000.0
+            if abs(line_m - shape_m) > max(_DIFFERS_M, _DIFFERS * shape_m):
+                ways = f"{shape_m / 1000.0:.2f} km, on the line it is {line_m / 1000.0:.2f} km"
+                found = f"from {printable(a)} to {printable(b)} trips run {ways}"
+                remedy = "a ring, or two ways between these stations: choose other routes, or give their km in the table of stops"
+                notes.problems.append(Problem("way_differs", "", found, "about the same", remedy, place="shapes.txt"))
+                return
+
+
+def _written(
+    trips: Sequence[Trip], stops: Stops, tracks: Tracks, name: str, options: GtfsOptions, notes: Notes
+) -> dict[str, str]:
+    network = tracks.network
+    ids = identifiers(network.stations)
+    run_ids = identifiers([trip.id for trip in trips])
+    timed = [Timed(trip, run_ids[trip.id], _legs(trip, stops, network)) for trip in trips]
+    still = [each for each in timed if not each.legs]
+    for each in still:
+        found = f"trip {printable(each.trip.id)} stays at one place"
+        notes.problems.append(Problem("no_way", "", found, "stops at different places", place="trips.txt"))
+    if still:
+        return {}
+    _fill(timed, stops, tracks, options, notes)
+    trains, services = train_rows(timed, tracks, stops, ids, options)
+    rotations = rotations_of(timed, stops, notes)
+    _tell_assumed(trips, tracks, options, notes)
+    times = [time for each in timed for time in each.span()]
+    parts = {"trains": trains, "services": services, "rotations": rotations}
+    texts = {
+        "line.yaml": line_text(name, tracks, stops.names, ids, options),
+        "supply.yaml": supply_text(tracks),
+        "timetable.yaml": timetable_text(parts),
+    }
+    return {"README.md": readme_text(name, notes), **texts, "study.yaml": study_text(name, min(times), max(times))}
+
+
+def _legs(trip: Trip, stops: Stops, network: Network) -> list[Leg]:
+    return network.way([stops.station[stop.stop] for stop in trip.stops])
+
+
+def _fill(timed: Sequence[Timed], stops: Stops, tracks: Tracks, options: GtfsOptions, notes: Notes) -> None:
+    """Put times to calls that have none if repair is asked for, else tell them."""
+    filled = 0
+    open_: dict[str, int] = {}
+    for each in timed:
+        lacking = without_times(each.trip)
+        if lacking and options.repair:
+            names = [stops.station[stop.stop] for stop in each.trip.stops]
+            steps = [sum(abs(leg.to_km - leg.from_km) for leg in tracks.network.way(pair)) for pair in pairwise(names)]
+            filled += len(fill_times(each.trip, [0.0, *np.cumsum(steps).tolist()]))
+        elif lacking:
+            open_[each.trip.id] = len(lacking)
+    if filled:
+        notes.repaired.append(f"{filled} calls without times got some between their neighbours, in proportion to the distance")
+    if open_:
+        notes.assumed.append(
+            f"{sum(open_.values())} calls of {len(open_)} trips have no times ({listed(open_)}): the trains stop there without"
+            " any; with repair they get some in proportion to the distance"
+        )
+
+
+def _tell_assumed(trips: Sequence[Trip], tracks: Tracks, options: GtfsOptions, notes: Notes) -> None:
+    once = sum(stop.arrival == stop.departure for trip in trips for stop in trip.stops[1:-1] if not stop.passes)
+    if once:
+        notes.assumed.append(
+            f"{once} calls on the way have one time for arrival and departure: it is the departure, the arrival is not planned;"
+            f" every stop lasts {options.min_dwell_s:g} s at least"
+        )
+    else:
+        notes.assumed.append(f"every stop on the way lasts {options.min_dwell_s:g} s at least, or as planned if that is less")
+    if rounding_s(trips) == 60.0:
+        notes.assumed.append(
+            "times are whole minutes, rounded: a train less than 30 s late may be on time (feasibility of the study:"
+            " tolerance_s: 30)"
+        )
+    double = ", ".join(f"{each.track} (km {each.from_km:g} to {each.to_km:g})" for each in tracks.seconds) or "none"
+    notes.assumed += [
+        f"second tracks, for trains with falling kilometres: {double}; trains do not see each other",
+        f"speed limit {options.speed_kmh:g} km/h everywhere; level and straight; all trips are run by the train {options.train}",
+        "the whole supply: substations at equal distances, contact line, rails",
+    ]
+
+
+def identifiers(names: Sequence[str] | dict[str, Place]) -> dict[str, str]:
+    """Return for each name an identifier that the files allow, no two equal."""
+    found: dict[str, str] = {}
+    taken: dict[str, int] = defaultdict(int)
+    for name in names:
+        plain = printable(name).replace("[", "(").replace("]", ")").strip()[:280] or "-"
+        taken[plain] += 1
+        found[name] = plain if taken[plain] == 1 else f"{plain} ({taken[plain]})"
+    return found

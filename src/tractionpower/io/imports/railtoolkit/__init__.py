@@ -1,0 +1,1 @@
+"""Files of railtoolkit, which are those of TrainRuns, too: rolling stock and running paths."""

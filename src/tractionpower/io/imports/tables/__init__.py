@@ -1,0 +1,1 @@
+"""Timetables from CSV files and Excel workbooks, as people write them."""

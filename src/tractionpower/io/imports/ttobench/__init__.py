@@ -1,0 +1,1 @@
+"""TTOBench: tracks, trains and journeys."""

@@ -1,0 +1,129 @@
+"""Trains driven by rules: closed forms of coasting and cruising, lateness, and caps."""
+
+import numpy as np
+import pytest
+from small_trains import SERIES_MOTORS, Stepper, call, energy_kwh, make_trains, passing, run
+
+from tractionpower.kernels.train_tables import COASTING, CRUISING
+from tractionpower.movement.driving.driven import compile_driven
+
+LIMIT = {"limits": [(-1.0, 40.0, 144.0)]}
+STOPS = {"stations": {"A": 0.0, "B": 20.0}, "end": "stop"}
+CALLS = [call("A", departure=0.0), call("B", arrival=800.0)]
+
+
+def rules(**more):
+    return {"kind": "rules", **more}
+
+
+def coasting(found):
+    return found.rows[found.rows["phase"] == COASTING]
+
+
+def test_a_train_cruises_at_its_share_of_the_limit():
+    found = run(20.0, driving=rules(speed_percent=80.0), **LIMIT, **STOPS)
+    cruising = found.rows["v_mps"][found.rows["phase"] == CRUISING]
+    assert found.rows["v_mps"].max() == pytest.approx(32.0, abs=1e-9)
+    assert cruising == pytest.approx(32.0, abs=1e-9)
+
+
+def test_a_train_cruises_no_faster_than_told():
+    assert run(20.0, driving=rules(speed_kmh=90.0), **LIMIT, **STOPS).rows["v_mps"].max() == pytest.approx(25.0, abs=1e-9)
+
+
+def test_coasting_with_constant_resistance_is_the_closed_form():
+    """From v0 it takes v0 t - w g t2 / 2 to come that far; the train coasts from km 10 to its braking curve."""
+    drag = {"specific_a_n_per_kn": 2.0}
+    found = run(20.0, driving=rules(coast_from=[{"km": 10.0, "to_km": 14.0}]), resistance=drag, **LIMIT, **STOPS)
+    assert coasting(found)["traction_n"][:-1] == pytest.approx(0.0)
+    inside = found.rows[(found.rows["s_m"] >= 10_000.0) & (found.rows["s_m"] <= 14_000.0)]
+    s, v = inside["s_m"], inside["v_mps"]
+    assert v**2 == pytest.approx(40.0**2 - 2.0 * 2e-3 * 9.80665 * (s - 10_000.0), rel=1e-9)
+
+
+def test_coasting_without_an_end_goes_to_the_next_stop():
+    found = run(20.0, driving=rules(coast_from=[{"km": 15.0}]), resistance={"specific_a_n_per_kn": 2.0}, **LIMIT, **STOPS)
+    behind = found.rows[found.rows["s_m"] > 15_000.0]
+    assert (behind["traction_n"] < 1.0).all()
+    assert found.end_m == pytest.approx(20_000.0)
+
+
+def test_coasting_before_stops_saves_energy_and_takes_longer():
+    flat = run(20.0, resistance={"a_n": 4000.0}, **LIMIT, **STOPS)
+    saved = run(20.0, driving=rules(coast_before_stops_km=4.0), resistance={"a_n": 4000.0}, **LIMIT, **STOPS)
+    first = coasting(saved)[0]
+    assert first["s_m"] == pytest.approx(16_000.0, abs=40.0)
+    assert energy_kwh(saved) < energy_kwh(flat)
+    assert saved.finished_s > flat.finished_s
+
+
+def test_a_train_holds_the_lowest_speed_of_its_coasting():
+    drag = {"specific_a_n_per_kn": 8.0}
+    how = rules(coast_from=[{"km": 6.0, "to_km": 16.0}], coast_down_to_kmh=72.0)
+    found = run(20.0, driving=how, resistance=drag, **LIMIT, **STOPS)
+    inside = found.rows[(found.rows["s_m"] > 14_000.0) & (found.rows["s_m"] < 16_000.0)]
+    assert inside["v_mps"] == pytest.approx(20.0, abs=0.2)
+    assert inside["traction_n"][5:-2] == pytest.approx(8e-3 * 9.80665 * 200_000.0, rel=1e-6)
+    after = found.rows[(found.rows["s_m"] > 16_100.0) & (found.rows["s_m"] < 16_500.0)]
+    assert (after["traction_n"] > 17_000.0).all()
+
+
+def test_a_capped_effort_accelerates_less():
+    found = run(20.0, driving=rules(effort_percent=50.0), **LIMIT, **STOPS)
+    assert found.rows["traction_n"][2] == pytest.approx(100_000.0)
+    assert found.rows["wished_n"][2] == pytest.approx(100_000.0)
+
+
+@pytest.mark.parametrize("drive", [None, SERIES_MOTORS])
+def test_a_cap_of_the_current_holds_whatever_the_drive(drive):
+    more = {} if drive is None else {"drive": drive}
+    found = run(20.0, max_current_a=250.0, **LIMIT, **STOPS, **more)
+    assert found.rows["current_a"].max() == pytest.approx(250.0, rel=1e-6)
+
+
+def test_a_cap_of_the_power_holds_at_the_wheel():
+    found = run(20.0, max_power_kw=1000.0, **LIMIT, **STOPS)
+    assert found.rows["wheel_w"].max() == pytest.approx(1e6, rel=1e-6)
+
+
+def test_a_late_train_is_driven_flat_out_until_it_is_on_time():
+    """It leaves 60 s late: it passes M at the limit, catches up before B, from there on it keeps its reduced speed."""
+    stations = {"A": 0.0, "M": 15.0, "B": 60.0}
+    calls = [call("A", departure=0.0), passing("M", arrival=690.0), call("B", arrival=2560.0)]
+    how = rules(speed_percent=60.0)
+    late = make_trains(
+        60.0,
+        calls=calls,
+        time=60.0,
+        driving=how,
+        stations=stations,
+        end="stop",
+        limits=[(-1.0, 61.0, 144.0)],
+        resistance={"specific_a_n_per_kn": 4.0},
+    )
+    stepper = Stepper.of(compile_driven(late))
+    while not stepper.gone:
+        stepper.step(3000.0)
+    rows, arrived = stepper.rows, stepper.state.arrived_s
+    fast = rows["v_mps"] > 0.61 * 40.0
+    assert fast.any()
+    assert not stepper.mover["late"]
+    assert 2450.0 < arrived[2] < 2561.5  # it coasts on from its higher speed
+    # It is late by the plan from M on, and catches up where flat out and plan meet.
+    first, last = np.flatnonzero(fast)[[0, -1]]
+    assert rows["s_m"][first] < 3000.0
+    assert rows["s_m"][last] < 55_000.0
+
+
+def test_a_train_on_time_follows_its_plan_at_another_voltage_too():
+    stations, calls = {"A": 0.0, "B": 20.0}, [call("A", departure=0.0), call("B", arrival=900.0)]
+    how = rules(speed_percent=70.0)
+    stepper = Stepper.of(compile_driven(make_trains(20.0, calls=calls, driving=how, stations=stations, end="stop", **LIMIT)))
+    while not stepper.gone:
+        stepper.step(2700.0)
+    assert stepper.rows["v_mps"].max() <= 28.0 + 1e-9
+    assert stepper.state.arrived_s[1] < 900.0
+
+
+def test_without_plans_nothing_is_laid():
+    assert (compile_driven(make_trains(5.0)).tables.trains["plans"] == 0).all()
