@@ -219,7 +219,9 @@ class RandomCoupling:
         if rng.random() < 0.5:
             how["coast_before_stops_km"] = round(rng.uniform(0.3, 3.0), 2)
         if rng.random() < 0.4:
-            how["coast_from"] = [{"km": round(rng.uniform(0.0, self.length), 3)} for _ in range(rng.integers(1, 3))]
+            ends = [run["route"][0][end] for end in ("from_km", "to_km")]
+            shares = rng.uniform(0.0, 1.0, rng.integers(1, 3)).tolist()
+            how["coast_from"] = [{"km": round(ends[0] + share * (ends[1] - ends[0]), 3)} for share in shares]
         if rng.random() < 0.3:
             how["coast_down_to_kmh"] = round(rng.uniform(10.0, 60.0), 1)
         if rng.random() < 0.3:
