@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tractionpower.kernels.effort import look_up
+from tractionpower.kernels.effort import greatest_effort, look_up
 from tractionpower.kernels.jit import inlined, njit
-from tractionpower.kernels.wayside import HERE_M
+from tractionpower.kernels.wayside import HERE_M, additional_resistance, resistance_at
 
 NO_CEILING = 1e-10
 """Share by which a square of a speed may pass a ceiling by rounding."""
@@ -14,15 +14,51 @@ NO_CEILING = 1e-10
 CRAWL_MPS = 1.0
 """Below this speed a driver does not coast on, so that no train comes to a stand on its way [m/s]."""
 
+_LEAST_SLOWING = 0.01
+"""A train that coasts is taken to slow down by this at least [m/s2]."""
+
+_SLOWEST_MPS = 0.5
+_LEAST_S = 1e-3
+
 
 @njit
 def judge_time(tables, train, mover, now):
-    """Note whether a train is late at the time `now` [s]: it is from `late_s` behind its plan on until it has caught up."""
+    """Note whether a train is late at the time `now` [s]: it is from `late_s` behind its plan on until it can catch up.
+
+    A train that is faster than its plan comes down to it by coasting, and is early for each metre on the way: what it gains
+    counts, or it would come down too late and be early for good.
+    """
     due, _ = look_up(tables.points, train.first_due, train.dues, mover.s_m)
-    if mover.late:
-        mover.late = now > due
-    else:
-        mover.late = now > due + train.late_s
+    behind = now - due
+    if behind > 0.0:
+        behind -= _gain(tables, train, mover)
+    mover.late = behind > (0.0 if mover.late else train.late_s)
+
+
+@njit
+def _gain(tables, train, mover):
+    """Return how much earlier a train is by coasting down to the speed of its plan than it would be by its plan [s].
+
+    With the deceleration a constant on the way D from v down to the speed p of the plan, that is D / p - (v - p) / a. The way
+    ends where the train would have to brake for its next stop.
+    """
+    p, _ = _piece_at(tables, train.first_plan, train.plans, mover.s_m)
+    piece, v = tables.pieces[p], mover.v_mps
+    planned = max(piece.w + piece.dw * (mover.s_m - piece.from_m), 0.0) ** 0.5
+    if v <= planned or planned < _SLOWEST_MPS:
+        return 0.0
+    track = additional_resistance(tables, train, mover, mover.s_m, 0.0)
+    resistance, _ = resistance_at(train, track, 0.5 * (v + planned))
+    slowing = max(resistance / train.inertia_kg, _LEAST_SLOWING)
+    end = train.route_m
+    for row in range(train.first_stop + mover.stop, train.first_stop + train.stops):
+        if tables.stops[row].stops:
+            end = tables.stops[row].at_m
+            break
+    room = end - mover.s_m - 0.5 * v * v / train.service_mps2
+    way = min(0.5 * (v * v - planned * planned) / slowing, max(room, 0.0))
+    slower = max(v * v - 2.0 * slowing * way, 0.0) ** 0.5
+    return way / planned - (v - slower) / slowing
 
 
 @inlined
@@ -39,8 +75,8 @@ def planned_here(tables, train, mover):
     -------
     share : float
         Share of the greatest effort, 0 while coasting.
-    room : float
-        How far that holds [m].
+    room, time : float
+        How far [m] and how long [s] that holds.
     p, last : int
         Row of the ceiling that is kept, and its last row: that of the plan, or that of the train where it is faster than the
         plan; then it coasts.
@@ -50,9 +86,7 @@ def planned_here(tables, train, mover):
     ceiling = piece.w + piece.dw * (mover.s_m - piece.from_m)
     if mover.v_mps * mover.v_mps > ceiling + NO_CEILING * (1.0 + ceiling):
         p, last = _piece_at(tables, train.first_piece, train.pieces, mover.s_m)
-        return 0.0, np.inf, p, last
-    if mover.v_mps < CRAWL_MPS:
-        return 1.0, np.inf, p, last
+        return 0.0, np.inf, np.inf, p, last
     points, low, end = tables.points, train.first_cap, train.first_cap + train.caps
     high = end
     while high - low > 1:
@@ -61,7 +95,21 @@ def planned_here(tables, train, mover):
             low = middle
         else:
             high = middle
-    return points[low].y, points[high].x - mover.s_m if high < end else np.inf, p, last
+    room, share = points[high].x - mover.s_m if high < end else np.inf, points[low].y
+    if share == 0.0 and mover.v_mps < CRAWL_MPS:
+        return 1.0, room, _time_to_crawl(tables, train, mover), p, last
+    return share, room, np.inf, p, last
+
+
+@inlined
+def _time_to_crawl(tables, train, mover):
+    """Return how long a train with all its effort takes to the speed from which on its driver coasts [s]."""
+    track = additional_resistance(tables, train, mover, mover.s_m, 0.0)
+    effort, _, _ = greatest_effort(tables, train, mover, CRAWL_MPS)
+    resistance, _ = resistance_at(train, track, CRAWL_MPS)
+    if effort <= resistance:
+        return np.inf
+    return max((CRAWL_MPS - mover.v_mps) * train.inertia_kg / (effort - resistance), _LEAST_S)
 
 
 @inlined

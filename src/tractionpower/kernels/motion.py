@@ -191,8 +191,8 @@ def _run_where_allowed(tables, train, mover, tally, time, cap_w, called):
     allowed, room, left = allowed_here(tables, train, mover, time)
     share, rows = 1.0, (train.first_piece + mover.piece, train.first_piece + train.pieces - 1)
     if follows_plan(train, mover):
-        share, way, p, last = planned_here(tables, train, mover)
-        room, rows = min(room, way), (p, last)
+        share, way, seconds, p, last = planned_here(tables, train, mover)
+        room, left, rows = min(room, way), min(left, seconds), (p, last)
     caps = (cap_w if allowed == POWERED else 0.0, share)
     before = so_far(tally)
     is_below, falls = _is_below(tables, mover, rows[0]), tables.pieces[rows[0]].dw < 0.0

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
-from small_trains import SERIES_MOTORS, Stepper, call, energy_kwh, make_trains, passing, run
+from small_trains import BRAKE, SERIES_MOTORS, Stepper, call, energy_kwh, make_trains, passing, run
 
 from tractionpower.kernels.train_tables import COASTING, CRUISING
 from tractionpower.movement.driving.driven import compile_driven
 
 LIMIT = {"limits": [(-1.0, 40.0, 144.0)]}
 STOPS = {"stations": {"A": 0.0, "B": 20.0}, "end": "stop"}
+AT_5 = {"stations": {"A": 0.0, "B": 5.0}}
 CALLS = [call("A", departure=0.0), call("B", arrival=800.0)]
 
 
@@ -127,3 +128,29 @@ def test_a_train_on_time_follows_its_plan_at_another_voltage_too():
 
 def test_without_plans_nothing_is_laid():
     assert (compile_driven(make_trains(5.0)).tables.trains["plans"] == 0).all()
+
+
+CAR = {"resistance": {"a_n": 2500.0, "c_n_per_kmh2": 0.7}, "brake": BRAKE, "limits": [(-1.0, 40.0, 140.0)]}
+
+
+@pytest.mark.parametrize("behind_s", [0.0, 2.0, 10.0, 60.0, 100.0])
+def test_a_train_that_starts_late_arrives_on_time_and_not_before(behind_s):
+    """It comes down to its plan when coasting down brings it there on time; then it has used no more than it had to."""
+    calls = [call("A", departure=0.0), call("B", arrival=700.0)]
+    found = make_trains(20.0, calls=calls, time=behind_s, driving={"kind": "to_time"}, **STOPS | CAR)
+    stepper = Stepper.of(compile_driven(found))
+    while not stepper.gone:
+        stepper.step(3000.0)
+    assert stepper.state.arrived_s[1] == pytest.approx(700.0, abs=1.0)
+    seconds = 700.0 - behind_s
+    replanned = run(
+        20.0, driving={"kind": "to_time"}, calls=[call("A", departure=0.0), call("B", arrival=seconds)], **STOPS | CAR
+    )
+    assert stepper.rows["power_w"].sum() / 3.6e6 == pytest.approx(energy_kwh(replanned), rel=0.02)
+
+
+@pytest.mark.parametrize("rules_of", [{"effort_percent": 25.0}, {"coast_from": [{"km": 0.5}]}])
+def test_plans_do_not_depend_on_the_step(rules_of):
+    hill = [(-1.0, 1.0, 0.0), (1.0, 2.0, 25.0), (2.0, 7.0, 0.0)]
+    times = [run(5.0, driving=rules(**rules_of), slopes=hill, step_s=h, **STOPS | CAR | AT_5).finished_s for h in (0.1, 1.0, 2.0)]
+    assert times[1:] == pytest.approx([times[0]] * 2, rel=5e-3)
