@@ -162,7 +162,8 @@ FILES_OF_A_RUN = """## Other files
 
 Figures and workbook are made from the tables: `tractionpower report DIR` writes them again without a simulation. A file that
 another program holds open stays, and the new one stands beside it with `.new` before its suffix. `tractionpower journey`
-writes `trains`, `calls`, `key_figures.json` and `run.json` of the same form.
+writes `trains`, `calls`, `key_figures.json` and `run.json` of the same form. `feasibility` keeps the trial runs of a search that
+was broken off in `.running/`, and goes on from them when the study is judged into the same folder again.
 """
 EXPORT = """## Tables for other programs
 

@@ -69,6 +69,18 @@ def test_an_interrupted_simulation_keeps_its_parts(tmp_path):
     assert '"interrupted"' in note.read_text(encoding="utf-8")
 
 
+def test_an_interrupted_feasibility_study_keeps_its_parts(tmp_path):
+    def interrupt(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        tp.feasibility(tp.load("y-junction"), tmp_path / "out", progress=interrupt)
+    partial = tp.Results.open(tmp_path / "out", partial=True)
+    assert partial.run["status"] == "interrupted"
+    assert partial.run["steps"] > 0
+    assert "feasibility" not in partial.run
+
+
 def test_the_examples_of_the_readme_run(tmp_path, monkeypatch):
     blocks = re.findall(r"^```python\n(.*?)^```", README.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
     assert blocks, "README.md shows no ```python block"

@@ -1,6 +1,13 @@
 """``tractionpower feasibility``: what it says first, writes and returns."""
 
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
 import types
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -11,6 +18,8 @@ from train_study import FILES, write_train_study
 from tractionpower.cli import main
 from tractionpower.cli.feasibility_summary import headline, show
 from tractionpower.results.results import Results
+from tractionpower.studies import feasibility
+from tractionpower.studies.feasibility import study as whole
 from tractionpower.studies.remedies import remedy
 from tractionpower.studies.remedies import search as searching
 
@@ -31,13 +40,15 @@ def search(monkeypatch):
     """Stand in for the search; return the calls that it gets."""
     calls = []
 
-    def found(scenario, judgement, progress=None):
+    def found(scenario, judgement, progress=None, *, folder=None):
         calls.append(judgement.verdict)
         progress(1, 2)
+        assert Results.open(folder.parent.parent).run["feasibility"]["verdict"] == judgement.verdict  # written before it begins
         words = REMEDIES["search"]
         return types.SimpleNamespace(
-            sensitivities="sensitivities", tried=words["tried"], interrupted=words["interrupted"], notes=tuple(words["notes"])
-        )
+            sensitivities="sensitivities", tried=words["tried"], interrupted=words["interrupted"], notes=tuple(words["notes"]),
+            stopped=False, reused=0,
+        )  # fmt: skip
 
     monkeypatch.setattr(searching, "search", found)
     monkeypatch.setattr(remedy, "as_notes", lambda items: REMEDIES["sensitivities" if items == "sensitivities" else "remedies"])
@@ -86,14 +97,104 @@ def test_without_search_and_with_another_tolerance(study, search, capsys):
     assert Results.open("here").run["feasibility"]["tolerance_s"] == 600.0
 
 
-def test_results_are_kept_when_the_search_breaks_off(study, search, monkeypatch):
-    def broken(*arguments):
+BOUNDS = {"kinds": ["reserve", "departure_shift"], "subjects": 1, "sensitivities": 0, "workers": 1}
+SEARCHED = "--set=remedies=" + json.dumps(BOUNDS)
+
+
+def test_a_search_that_is_broken_off_goes_on_when_the_study_is_judged_again(study, monkeypatch, capsys):
+    write_train_study(study, timetable=TIGHT)
+    lateness, runs = feasibility.lateness, []
+
+    def counted(scenario):
+        if len(runs) == 4:
+            raise KeyboardInterrupt
+        runs.append(1)
+        return lateness(scenario)
+
+    command = ["feasibility", "six", "--no-reports", SEARCHED]
+    monkeypatch.setattr(feasibility, "lateness", counted)
+    assert main(command) == 3
+    told = capsys.readouterr()
+    assert told.out.strip().startswith("INFEASIBLE")
+    assert "goes on from its trial runs" in told.err
+    assert "Traceback" not in told.err
+    folder = Path("reports/six-feasibility")
+    found = Results.open(folder).run["feasibility"]
+    assert (found["verdict"], found["search"]["interrupted"]) == ("infeasible", True)
+    assert 0 < found["search"]["tried"] <= 4
+    assert (folder / ".running" / "continued" / "remedies.json").is_file()
+    before = {path.name for path in folder.iterdir()} - {".running"}
+
+    monkeypatch.setattr(feasibility, "lateness", lateness)
+    assert main(command) == 0
+    told = capsys.readouterr()
+    assert f"{found['search']['tried']} trial runs of before are reused" in told.err
+    resumed = Results.open(folder).run["feasibility"]
+    assert not resumed["search"]["interrupted"]
+    assert {path.name for path in folder.iterdir()} == before  # what it went on from is gone
+    assert main([*command, "--out", "fresh"]) == 0
+    assert resumed == Results.open("fresh").run["feasibility"]
+    assert any(remedy["verified"] and remedy["feasible"] for remedy in resumed["remedies"])
+
+
+def test_ctrl_c_while_the_timetable_runs(study, monkeypatch, capsys):
+    assert main(["feasibility", "six", "--no-reports"]) == 0
+    before = Path("reports/six-feasibility/run.json").read_bytes()
+
+    def interrupt(*arguments):
         raise KeyboardInterrupt
 
-    write_train_study(study, timetable=TIGHT)
-    monkeypatch.setattr(searching, "search", broken)
+    monkeypatch.setattr(whole, "judge_outcome", interrupt)
+    capsys.readouterr()
     assert main(["feasibility", "six", "--no-reports"]) == 3
-    assert Results.open("reports/six-feasibility").run["feasibility"]["verdict"] == "infeasible"
+    told = capsys.readouterr().err
+    assert "interrupted after 3600 of 3600 steps; what was computed is kept in " in told
+    assert "`tractionpower report reports/six-feasibility --partial` makes reports of it" in told
+    folder = Path("reports/six-feasibility")
+    partial = Results.open(folder, partial=True)
+    assert partial.run["status"] == "interrupted"
+    assert "feasibility" not in partial.run
+    assert len(partial.table("trains")) > 0
+    assert (folder / "run.json").read_bytes() == before
+    assert main(["report", str(folder), "--partial"]) == 0
+    assert (folder / "partial" / "report.xlsx").is_file()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends a signal as a terminal does")
+def test_a_real_ctrl_c_in_the_middle(study):
+    ready = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
+    command = [sys.executable, "-m", "tractionpower", "feasibility", "six", "--set", "clock.end=900:00:00"]
+    command += ["--set", "clock.step_s=0.02"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=ready) as ran:  # noqa: PLW1509
+        waited = time.monotonic() + 120
+        while len(list(Path().glob("reports/*/.running/*/substations-*.parquet"))) < 2 and time.monotonic() < waited:
+            assert ran.poll() is None, ran.communicate()
+            time.sleep(0.05)
+        ran.send_signal(signal.SIGINT)
+        out, err = ran.communicate(timeout=60)
+    assert ran.returncode == 3, err
+    assert "Traceback" not in err
+    assert out == ""
+    assert Results.open("reports/six-feasibility", partial=True).run["status"] == "interrupted"
+
+
+def test_ctrl_c_before_the_first_step_leaves_nothing(tmp_path, monkeypatch):
+    def interrupt(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tractionpower.cosimulation.run.compile_scenario", interrupt)
+    assert main(["feasibility", "six"]) == 3
+    assert [path.name for path in tmp_path.iterdir()] == ["six"]
+
+
+def test_the_verdict_as_json(study, search, capsys):
+    write_train_study(study, timetable=TIGHT)
+    assert main(["feasibility", "six", "--no-reports", "--json", "--strict"]) == 4
+    said = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+    assert (said.pop("format"), said.pop("study"), said["folder"]) == (1, "six", "reports/six-feasibility")
+    assert said == Results.open(said.pop("folder")).run["feasibility"]
+    assert said["verdict"] == "infeasible"
+    assert said["search"]["tried"] == 73
 
 
 def test_another_study_file_has_results_of_its_own(study):

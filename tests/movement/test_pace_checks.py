@@ -1,9 +1,12 @@
 """A timetable that is faster than its trains is told with the seconds that are missing."""
 
+import re
+
 import pytest
 from small_trains import call, journey, make_run, make_trains, passing
 
 from tractionpower.model.driving import Rules
+from tractionpower.model.feasibility import Feasibility
 from tractionpower.model.timetable import Timetable
 from tractionpower.movement.checks import check_movement
 
@@ -40,14 +43,43 @@ def test_the_missing_seconds_are_told(missing, is_told):
         assert seconds == pytest.approx(missing, abs=0.3)  # steps of 1 s against steps of 0.1 s
 
 
-def test_sections_add_up_and_the_worst_is_named():
+def seconds_of(problem):
+    return float(problem.found.partition("planned are ")[2].partition(": ")[2].partition(" s are missing")[0])
+
+
+def test_each_section_is_told():
     b, c = shortest(*ALONE)
     plan = [call("A", departure=0.0), call("B", arrival=b - 10.0, departure=b - 10.0), call("C", arrival=c - 10.0 - 20.0)]
-    (problem,) = check_movement(study(*plan))
-    assert problem.path == "timetable.trains[x].calls[2].arrival"
-    seconds, total = problem.found.partition("planned are ")[2].split(": ")[1].split(" s are missing, ")
-    assert float(seconds) == pytest.approx(20.0, abs=0.3)
-    assert float(total.split(" s on 2 sections")[0]) == pytest.approx(30.0, abs=0.5)
+    first, second = check_movement(study(*plan))
+    assert [first.path, second.path] == ["timetable.trains[x].calls[1].arrival", "timetable.trains[x].calls[2].arrival"]
+    assert "from A to B" in first.found
+    assert "from B to C" in second.found
+    assert (seconds_of(first), seconds_of(second)) == (pytest.approx(10.0, abs=0.3), pytest.approx(20.0, abs=0.3))
+
+
+@pytest.mark.parametrize(("tolerance_s", "is_told"), [(0.0, True), (4.0, True), (6.0, False)])
+def test_what_the_study_tolerates_is_not_told(tolerance_s, is_told):
+    scenario = tight(5.0).model_copy(update={"feasibility": Feasibility(tolerance_s=tolerance_s)})
+    assert [problem.code for problem in check_movement(scenario)] == ["faster_than_train"] * is_told
+
+
+def test_trains_that_lack_time_on_the_same_section_are_named_once_with_their_seconds():
+    (c,) = shortest(call("A"), call("C"))
+    runs = [
+        make_run(name, 10.0, time=600.0 * k, calls=[call("A", departure=600.0 * k), call("C", arrival=600.0 * k + c - missing)])
+        for k, (name, missing) in enumerate({"u": 7.0, "v": 30.0, "w": -5.0}.items())
+    ]
+    first = {**study(call("A", departure=0.0), call("C", arrival=c - 12.0)).timetable.trains[0].model_dump(by_alias=True)}
+    scenario = study(call("A", departure=0.0), call("C", arrival=c))
+    problems = check_movement(scenario.model_copy(update={"timetable": Timetable.model_validate({"trains": [first, *runs]})}))
+    (problem,) = problems
+    assert problem.path == "timetable.trains[v].calls[1].arrival"
+    assert problem.found.startswith("faster than train v can: from A to C")
+    assert seconds_of(problem) == pytest.approx(30.0, abs=1.1)
+    named = dict(re.findall(r"train (\w) \(([\d.]+) s\)", problem.found))
+    assert {name: float(value) for name, value in named.items()} == {
+        "x": pytest.approx(12.0, abs=1.1), "u": pytest.approx(7.0, abs=1.1),
+    }  # fmt: skip
 
 
 def test_a_dwell_without_planned_times_takes_its_time():
@@ -72,7 +104,7 @@ def test_a_train_may_pass_early():
     assert problem.path == "timetable.trains[x].calls[1].arrival"
 
 
-def test_alike_runs_are_each_told_and_a_service_once():
+def test_alike_runs_are_named_and_a_service_once():
     calls = [call("A", departure=0.0), call("C", arrival=60.0)]
     scenario = study(*calls)
     later = make_run("y", 10.0, time=600.0, calls=[call("A", departure=600.0), call("C", arrival=660.0)])
@@ -81,12 +113,13 @@ def test_alike_runs_are_each_told_and_a_service_once():
     service = route | {"id": "S", "first": 900.0, "last": 3000.0, "headway_s": 300.0}
     table = Timetable.model_validate({"trains": [first, later], "services": [service]})
     problems = check_movement(scenario.model_copy(update={"timetable": table}))
-    assert [problem.path for problem in problems] == [
-        "timetable.trains[x].calls[1].arrival",
-        "timetable.trains[y].calls[1].arrival",
-        "timetable.services[S].calls[1].arrival",
-    ]
-    assert len({problem.found for problem in problems}) == 1
+    (problem,) = problems
+    assert problem.path == "timetable.services[S].calls[1].arrival"
+    told = re.fullmatch(
+        r"faster than service S can: .*: (.+ s) are missing; likewise train x \((.+)\), train y \((.+)\)", problem.found
+    )
+    assert told, problem.found
+    assert told[1] == told[2] == told[3]
 
 
 def test_it_is_told_beside_errors_of_other_runs():

@@ -129,6 +129,55 @@ def test_an_unfinished_run_keeps_its_parts_with_a_note(folder, write_run, rows):
     read_run(folder)
 
 
+def test_run_json_is_amended_and_the_tables_stay(folder, rows):
+    writer = RunWriter(folder, "study", HASH)
+    writer.append("loads", rows(0, 3))
+    run = {"study": "study", "said": 1}
+    writer.finish(run, [])
+    before = contents(folder)
+    writer.amend(run | {"said": 2})
+    after = contents(folder)
+    assert {name for name in after if after[name] != before.get(name)} == {"run.json"}
+    assert after.keys() == before.keys()
+    assert read_run(folder)["said"] == 2
+
+
+def test_what_a_later_study_goes_on_from_stays_until_one_has_no_use_for_it(folder, rows):
+    writer = RunWriter(folder, "study", HASH)
+    writer.append("loads", rows(0, 3))
+    writer.beside_parts.mkdir()
+    (writer.beside_parts / "kept.json").write_text("{}", encoding="utf-8")
+    kept = writer.beside_parts / "kept.json"
+    writer.finish({"study": "study"}, [], is_continued=True)
+    assert [path.name for path in (folder / ".running").iterdir()] == [kept.parent.name]
+    read_run(folder)
+    again = RunWriter(folder, "study", "f" * 64)
+    again.append("loads", rows(0, 3))
+    assert kept.exists()
+    again.discard()
+    assert kept.exists()
+    again.amend({"study": "study"}, is_continued=True)
+    assert kept.exists()
+    again.amend({"study": "study"})
+    assert not (folder / ".running").exists()
+
+
+def test_an_amended_run_json_beside_one_that_is_held_open(folder, write_run, rows, hold, monkeypatch):
+    write_run()
+    writer = RunWriter(folder, "study", HASH)
+    writer.append("loads", rows(0, 3))
+    writer.finish({"study": "study", "said": 1}, [])
+    hold("run.json")
+    for said in (2, 3):
+        writer.amend({"study": "study", "said": said})
+        assert read_run(folder)["said"] == said
+    assert [path.name for path in writer.beside] == ["run.new.json"]
+    monkeypatch.undo()
+    writer.amend({"study": "study", "said": 4})
+    assert read_run(folder)["said"] == 4
+    assert not (folder / "run.new.json").exists()
+
+
 @pytest.mark.parametrize("ended", [True, False])
 def test_a_folder_of_results_inside_is_no_foreign_matter(folder, rows, write_run, ended):
     inside = RunWriter(folder / "journey", "study, journey", HASH)

@@ -4,16 +4,15 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 if TYPE_CHECKING:
-    from tractionpower.cosimulation.run import Outcome
     from tractionpower.io.scenario_files import LoadedScenario
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.store import RunWriter
@@ -24,6 +23,7 @@ Bar = Callable[[int, int], None]
 
 def feasibility(
     study: Annotated[str, typer.Argument(help="Folder with a study.yaml, such a file, or the name of a shipped line.")],
+    *,
     out: Annotated[
         Path | None, typer.Option("--out", help="Folder of the results; default reports/<study>-feasibility/ here.")
     ] = None,
@@ -40,11 +40,12 @@ def feasibility(
     no_reports: Annotated[bool, typer.Option("--no-reports", help="Write the tables only, no figures and no workbook.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace what is there, even results of another study.")] = False,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 4 when the timetable is infeasible.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the verdict as JSON.")] = False,
 ) -> None:
     """Judge whether the timetable holds on this supply."""
     from tractionpower.cli.console import warn_of_compilation
     from tractionpower.cli.feasibility_summary import show
-    from tractionpower.cli.messages import tell, tell_beside, tell_problems
+    from tractionpower.cli.messages import NOT_COMPLETED, tell, tell_beside, tell_problems
     from tractionpower.cli.report import tell_reports
     from tractionpower.cli.run import write_run_reports
     from tractionpower.io.scenario_files import load_scenario
@@ -58,8 +59,12 @@ def feasibility(
     warn_of_compilation("advance")
     judgement, writer = _judge(loaded, scenario, (name, folder), tolerance, force=force)
     tell_problems(loaded.provenance.place([*loaded.problems, *judgement.warnings]))
-    outcome = _searched(scenario, judgement, writer, search)
-    show(outcome.run)
+    told, is_stopped = _searched(scenario, judgement, writer, search)
+    if as_json:
+        document = {"format": 1, "study": name, "folder": str(folder), **told["feasibility"]}
+        typer.echo(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))
+    else:
+        show(told)
     if not no_reports:
         tell("writing figures and workbook")
     reports, unwritten = ([], None) if no_reports else write_run_reports(folder, scenario)
@@ -70,7 +75,7 @@ def feasibility(
     if no_reports and (folder / WORKBOOK).exists():
         tell(f"{folder / WORKBOOK} is of an earlier run; `tractionpower report {folder}` writes it again")
     tell_beside(writer.beside)
-    raise typer.Exit(_exit_code(outcome, judgement, strict))
+    raise typer.Exit(NOT_COMPLETED if is_stopped else _exit_code(judgement, strict))
 
 
 def study_name(loaded: LoadedScenario) -> str:
@@ -85,42 +90,60 @@ def _judge(
     loaded: LoadedScenario, scenario: Scenario, place: tuple[str, Path], tolerance: float | None, *, force: bool
 ) -> tuple[Judgement, RunWriter]:
     """Judge a scenario; `place` is the name of the study and the folder of the results."""
+    from tractionpower.cli.messages import tell
     from tractionpower.errors import InputError
     from tractionpower.results.store import RunWriter
-    from tractionpower.studies.feasibility import judge
+    from tractionpower.studies.feasibility.study import Judging
 
     name, folder = place
     writer = RunWriter(folder, name, scenario.input_hash, force=force, scenario=scenario)
     try:
-        with _bar("running the timetable") as update:
-            judged = judge(scenario, writer, study=name, tolerance_s=tolerance, progress=update)
+        judging = Judging(scenario, writer, study=name, tolerance_s=tolerance)
     except BaseException as error:
         writer.discard()
         if isinstance(error, InputError):
             raise InputError(loaded.provenance.place(error.problems)) from None
         raise
-    return judged, writer
-
-
-def _searched(scenario: Scenario, judgement: Judgement, writer: RunWriter, wanted: bool | None) -> Outcome:
-    """Search for what would save the timetable, where it is wanted, and complete the results; they are kept in any case."""
-    outcome = judgement.outcome
     try:
-        if wanted or (wanted is None and judgement.verdict != "feasible"):
-            from tractionpower.studies.remedies.remedy import as_notes
-            from tractionpower.studies.remedies.search import search
+        with _bar("running the timetable") as update:
+            judgement = judging.execute(update)
+        outcome, is_late = judgement.outcome, judgement.verdict != "feasible"
+        writer.finish(outcome.run, outcome.key_figures, is_continued=is_late)  # whatever becomes of a search
+    except KeyboardInterrupt:
+        kept = judging.keep_unfinished(writer)
+        tell(f"interrupted after {judging.run.done} of {judging.run.steps} steps; what was computed is kept in {kept}")
+        tell(f"`tractionpower report {folder} --partial` makes reports of it")
+        raise
+    return judgement, writer
 
-            with _bar("searching what would save it") as update:
-                remedies = search(scenario, judgement, update)
-            said = {
-                "remedies": as_notes(remedies),
-                "sensitivities": as_notes(remedies.sensitivities),
-                "search": {"tried": remedies.tried, "interrupted": remedies.interrupted, "notes": list(remedies.notes)},
-            }
-            outcome = replace(outcome, run={**outcome.run, "feasibility": {**outcome.run["feasibility"], **said}})
-    finally:
-        writer.finish(outcome.run, outcome.key_figures)
-    return outcome
+
+def _searched(scenario: Scenario, judgement: Judgement, writer: RunWriter, wanted: bool | None) -> tuple[dict[str, Any], bool]:
+    """Search for what would save the timetable, where it is wanted; return what ``run.json`` says then, and whether Ctrl-C came.
+
+    Trial runs are kept beside the results until a search comes to its end.
+    """
+    from tractionpower.cli.messages import tell
+    from tractionpower.studies.remedies.remedy import as_notes
+    from tractionpower.studies.remedies.search import search
+
+    run = judgement.outcome.run
+    if not (wanted or (wanted is None and judgement.verdict != "feasible")):
+        return run, False
+    tell("the verdict is written; Ctrl-C ends the search, and what it has found is kept")
+    with _bar("searching what would save it") as update:
+        remedies = search(scenario, judgement, update, folder=writer.beside_parts)
+    if remedies.reused:
+        tell(f"{remedies.reused} trial runs of before are reused")
+    said = {
+        "remedies": as_notes(remedies),
+        "sensitivities": as_notes(remedies.sensitivities),
+        "search": {"tried": remedies.tried, "interrupted": remedies.interrupted, "notes": list(remedies.notes)},
+    }
+    run = {**run, "feasibility": {**run["feasibility"], **said}}
+    writer.amend(run, is_continued=remedies.interrupted)
+    if remedies.interrupted:
+        tell("the search was broken off: the same command goes on from its trial runs")
+    return run, remedies.stopped
 
 
 @contextmanager
@@ -139,9 +162,9 @@ def _bar(words: str) -> Iterator[Bar]:
         yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
-def _exit_code(outcome: Outcome, judgement: Judgement, strict: bool) -> int:
+def _exit_code(judgement: Judgement, strict: bool) -> int:
     from tractionpower.cli.messages import DONE, LIMIT_VIOLATED, NOT_COMPLETED
 
-    if outcome.flagged:
+    if judgement.outcome.flagged:
         return NOT_COMPLETED
     return LIMIT_VIOLATED if strict and judgement.verdict != "feasible" else DONE

@@ -65,9 +65,9 @@ class RemedySearch(Declaration):
     )
     wall_time_s: Real = field(
         "wall_time_s",
-        "Wall time of the search after which nothing new is tried, and no sensitivities are told.",
+        "Wall time of the search: after 60 % of it nothing new is tried, at its end nothing but the best proposal is verified.",
         above=0,
-        default=300.0,
+        default=240.0,
     )
     most_verified: Count = Field(
         default=6, ge=1, description="Proposals that are verified on the whole study, the cheapest first."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,8 +18,8 @@ from tractionpower.movement.compile import AT_START_M, compile_trains, start_tim
 from tractionpower.movement.declared import Declared
 from tractionpower.movement.telling import doubt
 
-TOLERANCE_S = 1.0
-"""Seconds that may be missing: times are whole seconds at best."""
+LEAST_S = 0.5
+"""Fewer missing seconds are never told, whatever the study tolerates: running times are of steps of 1 s [s]."""
 
 STEP_S = 1.0
 LONGEST_STEPS = 86_400
@@ -52,7 +52,10 @@ class Section:
 
 
 def check_pace(scenario: Scenario, items: Sequence[Declared]) -> list[Problem]:
-    """Return a warning for each train or service whose timetable is faster than it can run; `items` have no errors."""
+    """Return a warning for each section on which trains or services are planned faster than they can run.
+
+    It names all of them with the seconds that each lacks, the worst first. `items` have no errors.
+    """
     timed = [item for item in items if len(list(_planned(item.run))) > 1]
     if not timed:
         return []
@@ -60,14 +63,15 @@ def check_pace(scenario: Scenario, items: Sequence[Declared]) -> list[Problem]:
     for item in timed:
         alike.setdefault(_what_counts(item.run), []).append(item)
     times = _shortest_times(scenario, [members[0].run for members in alike.values()])
-    found = {
-        item.path: problem
-        for members, passed in zip(alike.values(), times, strict=True)
-        if passed is not None
-        for item in members
-        for problem in _tell(item, list(sections(item.run, *passed)))
-    }
-    return [found[item.path] for item in timed if item.path in found]
+    tolerance = max(scenario.feasibility.tolerance_s, LEAST_S)
+    found: dict[tuple[str, str], list[tuple[Declared, Section]]] = {}
+    for members, passed in zip(alike.values(), times, strict=True):
+        for item in members:
+            for part in () if passed is None else _short(sections(item.run, *passed), tolerance):
+                found.setdefault(_ends(item, part), []).append((item, part))
+    number = {item.path: k for k, item in enumerate(timed)}
+    first = {ends: min((number[item.path], part.call) for item, part in rows) for ends, rows in found.items()}
+    return [_tell(found[ends]) for ends in sorted(found, key=lambda ends: first[ends])]
 
 
 def _planned(run: TrainRun) -> Iterator[float]:
@@ -135,20 +139,35 @@ def sections(run: TrainRun, arrived_s: Sequence[float], at_m: Sequence[float]) -
             since, left_s, passed_s, dwells_s = k, leaves, arrived, 0.0
 
 
-def _tell(item: Declared, parts: Sequence[Section]) -> Iterator[Problem]:
+def _short(parts: Iterable[Section], tolerance_s: float) -> list[Section]:
+    """Return the sections that lack more than is tolerated; of those that begin at the same call the one that lacks most."""
     short: dict[int, Section] = {}
     for part in parts:
-        if part.missing_s > max(TOLERANCE_S, short[part.since].missing_s if part.since in short else 0.0):
+        if part.missing_s > max(tolerance_s, short[part.since].missing_s if part.since in short else 0.0):
             short[part.since] = part
-    if not short:
-        return
-    worst, calls = max(short.values(), key=lambda part: part.missing_s), item.run.calls
-    ends = "the start" if worst.since < 0 else calls[worst.since].station, calls[worst.call].station
+    return list(short.values())
+
+
+def _tell(lacking: Sequence[tuple[Declared, Section]]) -> Problem:
+    """Return the warning of a section for those that lack time on it: the worst in full, then all with their seconds."""
+    ranked = sorted(lacking, key=lambda row: (-round(row[1].missing_s, 1), row[0].path))
+    worst, part = ranked[0]
     found = (
-        f"faster than the train can: from {ends[0]} to {ends[1]} it takes {format_time(round(worst.shortest_s, 1))} flat out at"
-        f" nominal voltage, planned are {format_time(max(worst.planned_s, 0.0))}: {worst.missing_s:.1f} s are missing"
+        f"faster than {_named(worst)} can: from {' to '.join(_ends(worst, part))} it takes"
+        f" {format_time(round(part.shortest_s, 1))} flat out at nominal voltage, planned are"
+        f" {format_time(max(part.planned_s, 0.0))}: {part.missing_s:.1f} s are missing"
     )
-    if len(short) > 1:
-        found += f", {sum(part.missing_s for part in short.values()):.1f} s on {len(short)} sections in all"
+    if len(ranked) > 1:
+        others = ", ".join(f"{_named(item)} ({other.missing_s:.1f} s)" for item, other in ranked[1:])
+        found += f"; likewise {others}"
     remedy = "give it more time, a stronger train or fewer stops; it will be late"
-    yield doubt("faster_than_train", f"{item.path}.calls[{worst.call}].{worst.key}", found, remedy=remedy)
+    return doubt("faster_than_train", f"{worst.path}.calls[{part.call}].{part.key}", found, remedy=remedy)
+
+
+def _named(item: Declared) -> str:
+    return f"{'service' if item.is_service else 'train'} {item.run.id}"
+
+
+def _ends(item: Declared, part: Section) -> tuple[str, str]:
+    calls = item.run.calls
+    return "the start" if part.since < 0 else calls[part.since].station, calls[part.call].station

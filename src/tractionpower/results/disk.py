@@ -60,7 +60,12 @@ def write_text(path: Path, text: str) -> Path:
 
 def write_json(path: Path, content: Any) -> Path:
     """Write `content` as JSON for people and programs."""
-    return write_text(path, json.dumps(content, indent=1, ensure_ascii=False))
+    return write_text(path, json_text(content))
+
+
+def json_text(content: Any) -> str:
+    """Return `content` as JSON for people and programs."""
+    return json.dumps(content, indent=1, ensure_ascii=False)
 
 
 def read_json(path: Path) -> dict[str, Any] | None:

@@ -25,11 +25,13 @@ from tractionpower.results.disk import (
     BESIDE,
     beside,
     failures_told,
+    json_text,
     move_in,
     read_json,
     sha256_of,
     uninterrupted,
     write_json,
+    write_or_beside,
     write_text,
     write_whole,
 )
@@ -42,6 +44,7 @@ JOINING = 2
 
 SCENARIO_FILE = "scenario.json"
 RUNNING = ".running"
+CONTINUED = "continued"
 PARTIAL = "partial"
 """Folder of the reports of an unfinished run."""
 
@@ -81,6 +84,7 @@ class RunWriter:
         self._scenario = scenario
         self._count = 0
         self._parts: dict[str, list[Path]] = {}
+        self._files: dict[str, Any] = {}
         self.running = folder / RUNNING / input_hash[:16]
         with failures_told(folder):
             _refuse_foreign(folder, study, force=force)
@@ -105,8 +109,13 @@ class RunWriter:
             write_whole(path, lambda temporary: write_part(rows, temporary))
         self._parts.setdefault(table, []).append(path)
 
-    def finish(self, run: dict[str, Any], key_figures: Sequence[dict[str, Any]]) -> dict[str, Any]:
-        """Join the parts, move everything in, write ``run.json`` last.
+    @property
+    def beside_parts(self) -> Path:
+        """Folder of what a later study into the same folder goes on from; gone when one is finished that has no use for it."""
+        return self.folder / RUNNING / CONTINUED
+
+    def finish(self, run: dict[str, Any], key_figures: Sequence[dict[str, Any]], *, is_continued: bool = False) -> dict[str, Any]:
+        """Join the parts, move everything in, write ``run.json`` last; what `beside_parts` holds stays if that `is_continued`.
 
         Returns
         -------
@@ -129,15 +138,34 @@ class RunWriter:
                     with suppress(OSError):  # not named by run.json, so no part of the results
                         (self.folder / stale).unlink()
                 shutil.rmtree(self.folder / PARTIAL, ignore_errors=True)  # reports of a part of a run that is whole now
-                shutil.rmtree(self.folder / RUNNING, ignore_errors=True)
+                self._clear(is_continued)
+        self._files = complete["files"]
         return complete
+
+    def amend(self, run: dict[str, Any], *, is_continued: bool = False) -> None:
+        """Replace ``run.json`` after `finish` by one that says more; what `beside_parts` holds stays if that `is_continued`."""
+        path, text = self.folder / RUN_FILE, json_text(run | {"files": self._files})
+        with uninterrupted(), failures_told(self.folder):
+            written = write_or_beside(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+            if written == path:
+                beside(path).unlink(missing_ok=True)  # it would be taken for the newer one
+            elif written not in self.beside:
+                self.beside.append(written)
+            self._clear(is_continued)
+
+    def _clear(self, is_continued: bool) -> None:
+        """Remove what served the run, and what later studies would go on from unless they do."""
+        running = self.folder / RUNNING
+        for path in running.iterdir() if running.is_dir() else ():
+            if not (is_continued and path == self.beside_parts):
+                shutil.rmtree(path, ignore_errors=True)
+        _remove_empty(running)
 
     def discard(self) -> None:
         """Leave no trace: nothing was computed."""
         shutil.rmtree(self.running, ignore_errors=True)
         for folder in (self.folder / RUNNING, *self._made):
-            if folder.is_dir() and not any(folder.iterdir()):
-                folder.rmdir()
+            _remove_empty(folder)
 
     def keep_unfinished(self, run: dict[str, Any], key_figures: Sequence[dict[str, Any]] = ()) -> Path:
         """Leave the parts where they are, with a note of what they are; return their folder."""
@@ -252,6 +280,12 @@ def _run_file(folder: Path) -> Path:
     """Return the file that says what a run was; one written beside is the newer one."""
     path = folder / RUN_FILE
     return beside(path) if beside(path).is_file() else path
+
+
+def _remove_empty(folder: Path) -> None:
+    """Remove a folder in which nothing is."""
+    if folder.is_dir() and not any(folder.iterdir()):
+        folder.rmdir()
 
 
 def _earlier_files(folder: Path) -> set[str]:

@@ -169,6 +169,36 @@ def test_a_search_that_is_started_again_runs_nothing_twice(study, tmp_path):
     first = model.search(study, folder=tmp_path)
     assert first == again.search(study, folder=tmp_path)
     assert again.runs == sum(row.verified for row in first.found if row.feasible)  # only the verifying runs
+    assert first.reused == 0
+    assert Model(shift=0.3, cap=0.1).search(study, folder=tmp_path).reused == first.tried
+
+
+def test_ctrl_c_before_the_first_trial_and_while_proposals_are_verified(study, monkeypatch):
+    class Interrupted(Model):
+        def judge(self, scenario):
+            raise KeyboardInterrupt
+
+    remedies = Interrupted(shift=0.3, cap=0.1).search(study)
+    assert remedies.interrupted
+    assert remedies.stopped
+    assert found_of(remedies, "current_cap", "Y").feasible
+    assert not any(row.verified for row in remedies.found if row.feasible)
+    assert remedies.best is None
+
+    def interrupt(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tractionpower.studies.remedies.search.watch", interrupt)
+    remedies = Model(shift=0.3).search(study)
+    assert (remedies.found, remedies.interrupted, remedies.stopped) == ((), True, True)
+
+
+def test_what_there_was_no_time_to_verify_is_not_called_verified(study, monkeypatch):
+    monkeypatch.setattr("tractionpower.studies.remedies.search.TRIAL_SHARE", 1e9)
+    remedies = Model(shift=0.3, cap=0.1).search(apply_changes(study, ["remedies.wall_time_s=1e-6"]))
+    assert [row.verified for row in remedies.found if row.feasible][:2] == [True, False]
+    assert (remedies.interrupted, remedies.stopped) == (True, False)
+    assert any("wall time" in note for note in remedies.notes)
 
 
 def test_ctrl_c_leaves_what_was_found(study, tmp_path):

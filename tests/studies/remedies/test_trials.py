@@ -4,7 +4,9 @@ import math
 import pytest
 from remedy_cases import small_study
 
-from tractionpower.studies.remedies.trials import FILE, SpentError, Trials, judged
+from tractionpower.model.scenario import Clock
+from tractionpower.studies.remedies.allowance import Allowance
+from tractionpower.studies.remedies.trials import FILE, Glance, SpentError, Trials, judged
 
 CAP = "timetable.trains[X].max_current_a={}"
 
@@ -59,9 +61,37 @@ def test_trials_are_kept_as_they_come_and_used_again(tmp_path):
     assert again.run([CAP.format(950)]).late == {"X": 50.0}
     assert again.run([CAP.format(50)]).worst_s == 0.0
     assert run.runs == []
-    assert again.tried == 2
+    assert (again.tried, again.reused) == (2, 2)
     assert again.run([CAP.format(960)]).late == {"X": 60.0}
     assert run.runs == [960.0]
+    assert (again.tried, again.reused) == (3, 2)
+
+
+class GlanceLateness(Lateness):
+    """X is late by what its cap exceeds 900 A, Y in the second half hour by what it exceeds 700 A."""
+
+    def __call__(self, scenario):
+        cap = scenario.runs[0].max_current_a
+        self.runs.append((scenario.clock.end, cap))
+        return {"X": cap - 900.0, "Y": cap - 700.0 if scenario.clock.end > 900.0 else 0.0}
+
+
+def test_the_whole_is_run_only_where_a_glance_shows_nobody_late(tmp_path):
+    run = GlanceLateness()
+    glance = Glance(Clock.model_validate({"start": 0.0, "end": 900.0, "step_s": 1.0}), frozenset("X"), {"Y": 300.0})
+    trials = Trials(small_study(), 1.0, run, tmp_path, glance=glance)
+    seen = trials.run([CAP.format(950)])
+    assert run.runs == [(900.0, 950.0)]
+    assert (seen.holds, seen.is_partial, seen.late) == (False, True, {"X": 50.0, "Y": 300.0})
+    whole = trials.run([CAP.format(800)])
+    assert run.runs[1:] == [(900.0, 800.0), (1800.0, 800.0)]
+    assert (whole.holds, whole.is_partial, whole.late) == (False, False, {"Y": 100.0})
+    assert trials.run([CAP.format(600)]).holds
+    assert trials.tried == 3
+    again = Trials(small_study(), 1.0, run, tmp_path, glance=glance)
+    assert [again.run([CAP.format(cap)]) for cap in (950, 800)] == [seen, whole]
+    assert len(run.runs) == 5
+    assert again.reused == 2
 
 
 def test_another_study_does_not_use_them(tmp_path):
@@ -82,10 +112,10 @@ def test_nothing_is_tried_when_time_is_over_or_it_was_stopped():
     trials = Trials(small_study(remedies={"wall_time_s": 1e-9}), 1.0, Lateness())
     with pytest.raises(SpentError):
         trials.run([CAP.format(950)])
-    trials = Trials(small_study(), 1.0, Lateness())
-    trials.stop_if(False)
+    allowance = Allowance()
+    trials = Trials(small_study(), 1.0, Lateness(), allowance=allowance)
     trials.run([CAP.format(950)])
-    trials.stop_if(True)
+    allowance.stop()
     with pytest.raises(SpentError):
         trials.run([CAP.format(950)])
 

@@ -3,6 +3,7 @@ import math
 import pytest
 from remedy_cases import judged, small_study
 
+from tractionpower.studies.remedies.allowance import Allowance
 from tractionpower.studies.remedies.remedy import Remedy
 from tractionpower.studies.remedies.verify import verify
 
@@ -55,3 +56,34 @@ def test_what_does_not_hold_anyway_is_not_run():
 def test_a_change_that_is_refused_is_not_feasible():
     (row,) = verify([remedy(-1, 10.0)], small_study(), BASE, judge_by_cap({}))
     assert (row.feasible, row.verified) == (False, True)
+
+
+def three():
+    return [remedy(800, 10.0), remedy(700, 20.0), remedy(600, 30.0)]
+
+
+def test_when_time_is_over_only_the_best_is_verified():
+    late = dict.fromkeys((800.0, 700.0, 600.0), 0.0)
+    rows = verify(three(), small_study(), BASE, judge_by_cap(late), Allowance(-1.0))
+    assert [(row.cost, row.feasible, row.verified) for row in rows] == [
+        (10.0, True, True), (20.0, True, False), (30.0, True, False),
+    ]  # fmt: skip
+    assert math.isnan(rows[1].lost_after_s)
+    rows = verify(three(), small_study(), BASE, judge_by_cap(late | {800.0: 5.0}), Allowance(-1.0))
+    assert [(row.cost, row.feasible, row.verified) for row in rows] == [
+        (20.0, True, False), (30.0, True, False), (10.0, False, True),
+    ]  # fmt: skip
+
+
+def test_ctrl_c_keeps_what_was_verified():
+    def judge(scenario):
+        if scenario.runs[1].max_current_a == 700.0:
+            raise KeyboardInterrupt
+        return judge_by_cap({800.0: 0.0, 600.0: 0.0})(scenario)
+
+    allowance = Allowance()
+    rows = verify(three()[:2], small_study(remedies={"workers": 1}), BASE, judge, allowance)
+    assert [(row.cost, row.verified) for row in rows] == [(10.0, True), (20.0, False)]
+    assert allowance.stopped
+    rows = verify(three(), small_study(), BASE, judge, allowance)
+    assert not any(row.verified for row in rows)  # not even the first one

@@ -1,9 +1,10 @@
 import math
 
 import pytest
-from remedy_cases import planned, small_study
+from remedy_cases import case_of, planned, small_study
 
-from tractionpower.studies.remedies.window import AFTER_S, BEFORE_S, window
+from tractionpower.studies.remedies.candidate import Candidate
+from tractionpower.studies.remedies.window import AFTER_S, BEFORE_S, NEAR_S, reaches_all, window
 
 DAY_S = 86_400.0
 EVENT = {"time": 3600.0, "device": "C", "state": "open"}
@@ -49,3 +50,23 @@ def test_states_that_were_switched_before_count():
     clock = window(day(switch_events=[EVENT]), {"X": 20.0}).clock
     assert clock.start == 0.0
     assert clock.end < 40_000.0
+
+
+def candidate(*trains):
+    changes = tuple(f"timetable.trains[{train}].max_current_a=500" for train in trains)
+    return Candidate("current_cap", "-".join(trains), "%", 2.0, 5, lambda size: changes, str, float)
+
+
+def test_what_runs_at_another_time_does_not_reach_a_late_train():
+    study = day(planned("X", 30_000.0), planned("Y", 50_000.0), planned("Z", 30_000.0 + 900.0 + NEAR_S - 1.0))
+    both, one = case_of(study, {"X": 20.0, "Y": 5.0}), case_of(study, {"X": 20.0})
+    assert reaches_all(both, candidate("X", "Y"))
+    assert not reaches_all(both, candidate("X", "Z"))
+    assert not reaches_all(one, candidate("Y"))
+    assert reaches_all(one, candidate("Z"))
+
+
+def test_a_run_that_the_same_train_makes_later_is_reached():
+    study = day(timetable={"rotations": [{"id": "R", "runs": ["X", "Y"]}]})
+    assert reaches_all(case_of(study, {"Y": 20.0}), candidate("X"))
+    assert not reaches_all(case_of(study, {"X": 20.0}), candidate("Y"))

@@ -73,16 +73,39 @@ def judge(
     UsageError
         If it has no trains, or the tolerance is not allowed.
     """
-    tolerance = scenario.feasibility.tolerance_s if tolerance_s is None else float(tolerance_s)
-    _refuse(scenario, tolerance)
-    if writer is None:
-        writer, scenario_run = _Nowhere(), scenario.model_copy(update={"output": Output(tables=("calls",))})
-    else:
-        scenario_run = scenario
-    recording = Recording()
-    run = Run(scenario_run, writer, study, recording)
-    outcome = run.execute(progress)
-    return judge_outcome(scenario, run, (outcome, recording), writer, tolerance)
+    return Judging(scenario, writer, study=study, tolerance_s=tolerance_s).execute(progress)
+
+
+class Judging:
+    """A judgement in the making: parameters and exceptions are those of `judge`.
+
+    Attributes
+    ----------
+    run
+        The run with the network.
+    """
+
+    def __init__(
+        self, scenario: Scenario, writer: Writer | None = None, *, study: str = "", tolerance_s: float | None = None
+    ) -> None:
+        self.tolerance_s = scenario.feasibility.tolerance_s if tolerance_s is None else float(tolerance_s)
+        _refuse(scenario, self.tolerance_s)
+        self.scenario, self._recording = scenario, Recording()
+        calls_alone: dict[str, Any] = {"output": Output(tables=("calls",))}
+        self._writer: Writer = _Nowhere() if writer is None else writer
+        what = scenario.model_copy(update=calls_alone) if writer is None else scenario
+        self.run = Run(what, self._writer, study, self._recording)
+
+    def execute(self, progress: Progress | None = None) -> Judgement:
+        """Run to the end of the clock, and judge."""
+        outcome = self.run.execute(progress)
+        return judge_outcome(self.scenario, self.run, (outcome, self._recording), self._writer, self.tolerance_s)
+
+    def keep_unfinished(self, writer: RunWriter) -> Path:
+        """Keep what an interrupted run has computed, with a note that there is no verdict; return where it is."""
+        unfinished = self.run.outcome()
+        note = unfinished.run | {"status": "interrupted", "input_hash": self.scenario.input_hash}
+        return writer.keep_unfinished(note, unfinished.key_figures)
 
 
 def judge_outcome(scenario: Scenario, run: Run, done: tuple[Outcome, Recording], writer: Writer, tolerance_s: float) -> Judgement:
@@ -257,16 +280,21 @@ def feasibility(
     OutputError
         If the results cannot be written.
     """
-    how: dict[str, Any] = {"study": scenario.name, "tolerance_s": tolerance_s, "progress": progress}
+    how: dict[str, Any] = {"study": scenario.name, "tolerance_s": tolerance_s}
     if folder is None:
         memory = MemoryWriter()
-        outcome = judge(scenario, memory, **how).outcome
+        outcome = judge(scenario, memory, progress=progress, **how).outcome
         return Results(outcome.run, outcome.key_figures, memory.tables(), scenario)
     writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, force=force, scenario=scenario)
     try:
-        outcome = judge(scenario, writer, **how).outcome
+        judging = Judging(scenario, writer, **how)
     except BaseException:
         writer.discard()
         raise
-    writer.finish(outcome.run, outcome.key_figures)
+    try:
+        outcome = judging.execute(progress).outcome
+        writer.finish(outcome.run, outcome.key_figures)
+    except KeyboardInterrupt:
+        judging.keep_unfinished(writer)
+        raise
     return Results.open(folder)

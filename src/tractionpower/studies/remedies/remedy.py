@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from tractionpower.model.remedies import RemedyCosts
@@ -95,6 +95,10 @@ class Remedies:
         What a reader should know: why only reserve was searched, what was left untried, what "smallest" means.
     interrupted
         Whether the search was broken off, by Ctrl-C or its wall time.
+    stopped
+        Whether that was Ctrl-C.
+    reused
+        Number of the runs that an earlier search had made.
     """
 
     found: tuple[Remedy, ...]
@@ -102,6 +106,8 @@ class Remedies:
     sensitivities: tuple[Sensitivity, ...] = ()
     notes: tuple[str, ...] = ()
     interrupted: bool = False
+    stopped: bool = False
+    reused: int = field(default=0, compare=False)
 
     @property
     def best(self) -> Remedy | None:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from itertools import islice
+from functools import partial
+from itertools import islice, zip_longest
 from pathlib import Path
 
 from tractionpower.model.remedies import KINDS
 from tractionpower.model.scenario import Scenario
 from tractionpower.studies import feasibility
 from tractionpower.studies.feasibility import Judgement
+from tractionpower.studies.remedies.allowance import Allowance
 from tractionpower.studies.remedies.candidate import Candidate, combined, touch_the_same
 from tractionpower.studies.remedies.caps import caps
 from tractionpower.studies.remedies.case import Case
@@ -23,9 +24,12 @@ from tractionpower.studies.remedies.remedy import Remedies, Remedy, Sensitivity,
 from tractionpower.studies.remedies.reserves import reserves
 from tractionpower.studies.remedies.sensitivities import Judge, lost_seconds, sensitivities
 from tractionpower.studies.remedies.shifts import shifts
-from tractionpower.studies.remedies.trials import REFUSED, Lateness, Progress, SpentError, Trial, Trials, judged
+from tractionpower.studies.remedies.trials import REFUSED, Glance, Lateness, Progress, SpentError, Trial, Trials, judged
 from tractionpower.studies.remedies.verify import verify
-from tractionpower.studies.remedies.window import window
+from tractionpower.studies.remedies.window import reaches_all, window
+
+GLANCE_SHARE = 0.5
+"""A glance at the latest train is worth its run if it takes at most this share of the clock of a trial."""
 
 SOURCES: dict[str, Callable[[Case], Iterator[Candidate]]] = {
     "departure_shift": shifts,
@@ -37,6 +41,9 @@ SOURCES: dict[str, Callable[[Case], Iterator[Candidate]]] = {
 }
 
 CTRL_C = "Ctrl-C"
+TRIAL_SHARE = 0.6
+"""Share of the wall time in which trial runs begin; the rest is for verifying and sensitivities."""
+
 FIRSTS, SECONDS = 2, 4
 """Where no change alone suffices: how many of those that come nearest are fixed, and what is tried on top of each."""
 
@@ -72,15 +79,18 @@ def search(
     """
     if judgement.verdict == "feasible":
         return Remedies((), 0, notes=("The timetable holds as it is; nothing was searched.",))
-    work = _Search(
-        scenario,
-        judgement,
-        lateness or feasibility.lateness,
-        judge or feasibility.judge,
-        Path(folder) if folder is not None else None,
-        progress,
-    )
-    return work.execute()
+    try:
+        work = _Search(
+            scenario,
+            judgement,
+            lateness or feasibility.lateness,
+            judge or feasibility.judge,
+            Path(folder) if folder is not None else None,
+            progress,
+        )
+        return work.execute()
+    except KeyboardInterrupt:  # before there was anything to keep, or again while runs under way were waited for
+        return Remedies((), 0, notes=(f"The search was ended by {CTRL_C}.",), interrupted=True, stopped=True)
 
 
 class _Search:
@@ -98,14 +108,17 @@ class _Search:
         self.scenario, self.judgement, self.judge = scenario, judgement, judge
         self.bounds = scenario.remedies
         self.notes: list[str] = [costs_in_words(self.bounds.costs)]
-        self.interrupted = self.stopped = False
+        self.interrupted = False
+        wall_s = self.bounds.wall_time_s
+        self.allowance, self.for_trials = Allowance(wall_s), Allowance(TRIAL_SHARE * wall_s)
         self.attempts: dict[Candidate, dict[int, Trial]] = {}
         self.room = self.bounds.most_runs
         late = late_trains(judgement)
         watcher = watch(scenario, late)
         self.case = Case(scenario, judgement.tolerance_s, late, delays_by_call(judgement), watcher.culprits(), watcher.peaks)
         self.base = _window_that_shows(scenario, self.case, lateness)
-        self.trials = Trials(self.base, judgement.tolerance_s, lateness, folder, progress)
+        glance = _glance(scenario, self.base, self.case, lateness)
+        self.trials = Trials(self.base, judgement.tolerance_s, lateness, folder, progress, self.for_trials, glance)
 
     @property
     def is_whole(self) -> bool:
@@ -119,15 +132,20 @@ class _Search:
             self.room = self.bounds.most_runs - self.trials.tried  # most of the first runs were spared
             self._explore(self._affordable(self._pairs()))
         found = self._remedies()
+        if not self.allowance.stopped:
+            found = verify(found, self.scenario, self.judgement, self.judge, self.allowance)
         rows: tuple[Sensitivity, ...] = ()
-        try:
-            if not self.stopped:
-                found = verify(found, self.scenario, self.judgement, self.judge)
-            if not self.trials.over:
-                rows = sensitivities(self.case, self.base, self.judgement, self.judge)
-        except KeyboardInterrupt:
-            self._break_off(CTRL_C)
-        return Remedies(tuple(found), self.trials.tried, rows, tuple(self.notes), self.interrupted)
+        if not self.interrupted and not self.allowance.over:
+            rows = sensitivities(self.case, self.base, self.judgement, self.judge, self.allowance)
+        if self.allowance.over and not self.interrupted:
+            self._break_off(CTRL_C if self.allowance.stopped else self._wall_time)
+        return Remedies(
+            tuple(found), self.trials.tried, rows, tuple(self.notes), self.interrupted, self.allowance.stopped, self.trials.reused
+        )
+
+    @property
+    def _wall_time(self) -> str:
+        return f"its wall time, {self.bounds.wall_time_s:g} s"
 
     def _candidates(self) -> list[Candidate]:
         kinds = [kind for kind in KINDS if kind in self.bounds.kinds]
@@ -139,7 +157,14 @@ class _Search:
                 " or of departures helps them; only later planned times were searched."
             )
             kinds = [kind for kind in kinds if kind == "reserve"]
-        return [candidate for kind in kinds for candidate in SOURCES[kind](self.case)]
+        turns = [list(SOURCES[kind](self.case)) for kind in kinds]
+        # One of each kind in turn, so that the wall time leaves none out.
+        mixed = [candidate for row in zip_longest(*turns) for candidate in row if candidate is not None]
+        near = [candidate for candidate in mixed if reaches_all(self.case, candidate)]
+        if len(near) < len(mixed):
+            names = ", ".join(dict.fromkeys(f"{each.kind} of {each.subject}" for each in mixed if each not in near))
+            self.notes.append(f"Not tried, since they are not running when all of the late trains are: {names}.")
+        return near
 
     def _affordable(self, candidates: Sequence[Candidate]) -> list[Candidate]:
         """Return those whose runs the bounds have room for, even if each needs as many as it can."""
@@ -162,19 +187,15 @@ class _Search:
         """Look for the smallest size of each candidate, several at a time."""
         for candidate in candidates:
             self.attempts[candidate] = {}
-        pool = ThreadPoolExecutor(self.bounds.workers)
-        try:
-            for future in [pool.submit(self._climb, candidate) for candidate in candidates]:
-                future.result()
-        except KeyboardInterrupt:
+        ended = self.for_trials.run_all([partial(self._climb, candidate) for candidate in candidates], self.bounds.workers)
+        if self.for_trials.stopped:
+            self.allowance.stop()
             self._break_off(CTRL_C)
-        except SpentError:
-            self._break_off(f"its wall time, {self.bounds.wall_time_s:g} s")
-        finally:
-            self.trials.stop_if(self.interrupted)
-            pool.shutdown(cancel_futures=True)
+        elif not all(ended):
+            self._break_off(self._wall_time)
 
-    def _climb(self, candidate: Candidate) -> None:
+    def _climb(self, candidate: Candidate) -> bool:
+        """Look for the smallest size of a candidate; tell whether there was time for that."""
         tried = self.attempts[candidate]
 
         def trial(steps: int) -> Trial:
@@ -185,11 +206,14 @@ class _Search:
         def enough(steps: int) -> bool:
             return math.isfinite(trial(steps).excess_s) and self.case.late.keys().isdisjoint(trial(steps).late)
 
-        smallest(candidate.most, lambda steps: trial(steps).holds, enough)
+        try:
+            smallest(candidate.most, lambda steps: trial(steps).holds, enough)
+        except SpentError:
+            return False
+        return True
 
     def _break_off(self, reason: str) -> None:
         self.interrupted = True
-        self.stopped |= reason == CTRL_C
         self.notes.append(f"The search was ended by {reason}; what it had found by then is told.")
 
     def _any_holds(self) -> bool:
@@ -221,7 +245,8 @@ class _Search:
             size = candidate.size(steps)
             remedy = Remedy(
                 candidate.kind, candidate.subject, size, candidate.unit, candidate.tell(size), candidate.change(size),
-                trial.holds, self.is_whole, trial.worst_s, before, math.nan, round(candidate.cost(size), 6),
+                trial.holds, self.is_whole and not (trial.holds or trial.is_partial),
+                math.nan if trial.is_partial else trial.worst_s, before, math.nan, round(candidate.cost(size), 6),
             )  # fmt: skip
             rows.append((not trial.holds, remedy.cost if trial.holds else trial.excess_s, len(rows), remedy))
         return [row[-1] for row in sorted(rows, key=lambda row: row[:3])]
@@ -260,13 +285,32 @@ def missing_alone(judgement: Judgement) -> dict[str, float]:
     return missing
 
 
+def _glance(scenario: Scenario, base: Scenario, case: Case, lateness: Lateness) -> Glance | None:
+    """Return the part of the clock around the latest train, where trials run much more and it is late there, too."""
+    worst = max(case.late, key=lambda run: (case.late[run], run))
+    short = window(scenario, {worst: case.late[worst]})
+    if short is scenario or _length(short) > GLANCE_SHARE * _length(base):
+        return None
+    seen = judged(lateness(short), case.tolerance_s).late
+    if not _agree(seen.get(worst, 0.0), case, worst):
+        return None
+    both = frozenset(seen).intersection(case.late)
+    return Glance(short.clock, both, {run: late for run, late in case.late.items() if run not in both})
+
+
+def _length(scenario: Scenario) -> float:
+    return scenario.clock.end - scenario.clock.start
+
+
+def _agree(seen_s: float, case: Case, run: str) -> bool:
+    return math.isclose(seen_s, case.late[run], rel_tol=0.1, abs_tol=case.tolerance_s + 1.0)
+
+
 def _window_that_shows(scenario: Scenario, case: Case, lateness: Lateness) -> Scenario:
     """Return the study with a narrowed clock if a run of that shows the lateness of the whole, else the study itself."""
     narrow = window(scenario, case.late)
     if narrow is scenario:
         return scenario
     seen = judged(lateness(narrow), case.tolerance_s).late
-    agrees = seen.keys() == case.late.keys() and all(
-        math.isclose(seen[run], case.late[run], rel_tol=0.1, abs_tol=case.tolerance_s + 1.0) for run in seen
-    )
+    agrees = seen.keys() == case.late.keys() and all(_agree(seen[run], case, run) for run in seen)
     return narrow if agrees else scenario

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 from tractionpower.errors import InputError
 from tractionpower.model.change import apply_changes
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import SectionCabin, Substation
 from tractionpower.studies.feasibility import Judgement
+from tractionpower.studies.remedies.allowance import Allowance
 from tractionpower.studies.remedies.caps import cap_changes, greatest_of
 from tractionpower.studies.remedies.case import Case
 from tractionpower.studies.remedies.fleet import classes_of
@@ -54,7 +55,9 @@ def small_changes(case: Case, judgement: Judgement) -> list[SmallChange]:
     return mixed[: case.bounds.sensitivities]
 
 
-def sensitivities(case: Case, scenario: Scenario, judgement: Judgement, judge: Judge) -> tuple[Sensitivity, ...]:
+def sensitivities(
+    case: Case, scenario: Scenario, judgement: Judgement, judge: Judge, allowance: Allowance | None = None
+) -> tuple[Sensitivity, ...]:
     """Return the sensitivities of the lost seconds, the greatest first.
 
     Parameters
@@ -67,21 +70,28 @@ def sensitivities(case: Case, scenario: Scenario, judgement: Judgement, judge: J
         The judgement of the whole study, by which the changes are chosen.
     judge
         Judges a scenario.
+    allowance
+        How long to go on.
     """
+    allowance = Allowance() if allowance is None else allowance
     changes = small_changes(case, judgement)
     if not changes:
         return ()
-    base = lost_seconds(judge(scenario))
+    (base,) = allowance.run_all([lambda: lost_seconds(judge(scenario))], 1)
+    if base is None:
+        return ()
 
     def try_one(small: SmallChange) -> Sensitivity | None:
+        if allowance.over:
+            return None
         try:
             lost = lost_seconds(judge(apply_changes(scenario, small.change)))
         except InputError:  # the changed study breaks a rule, such as a voltage beyond the limits of the system
             return None
         return Sensitivity(small.kind, small.subject, small.per, lost - base, small.change)
 
-    with ThreadPoolExecutor(case.bounds.workers) as pool:
-        found = [row for row in pool.map(try_one, changes) if row is not None]
+    tasks = [partial(try_one, small) for small in changes]
+    found = [row for row in allowance.run_all(tasks, case.bounds.workers) if row is not None]
     return tuple(sorted(found, key=lambda row: (-abs(row.lost_s_change), row.kind, row.subject)))
 
 

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 import threading
-import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tractionpower.errors import InputError
 from tractionpower.model.change import apply_changes
 from tractionpower.model.remedies import RemedySearch
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import Clock, Scenario
 from tractionpower.results.disk import failures_told, read_json, write_json
 from tractionpower.results.versions import versions
+from tractionpower.studies.remedies.allowance import Allowance
 
 FILE = "remedies.json"
 """File in which trials are kept, where a folder is given."""
@@ -41,11 +41,14 @@ class Trial:
         Sum of what they are late beyond the tolerance [s]; infinite where the change is refused.
     worst_s
         Greatest lateness of all trains [s].
+    is_partial
+        Whether only a glance was run: the trains that are late without the change and were not seen are taken as before.
     """
 
     late: dict[str, float]
     excess_s: float
     worst_s: float
+    is_partial: bool = False
 
     @property
     def holds(self) -> bool:
@@ -55,6 +58,27 @@ class Trial:
 
 REFUSED = Trial({}, math.inf, math.inf)
 """A change that the model or the checks refuse."""
+
+
+@dataclass(frozen=True, slots=True)
+class Glance:
+    """A short part of the clock in which trains are late without changes.
+
+    A change that leaves one of them late there does not suffice, so the rest need not be run.
+
+    Attributes
+    ----------
+    clock
+        The part.
+    seen
+        Trains that are late in it without changes.
+    beyond
+        Lateness of the other late trains without changes [s].
+    """
+
+    clock: Clock
+    seen: frozenset[str]
+    beyond: Mapping[str, float]
 
 
 class Trials:
@@ -72,6 +96,10 @@ class Trials:
         Where trials are kept as they come; a search that is started again takes from there what it has.
     progress
         Called with the runs done, and the most that there can be.
+    glance
+        What is run first, if anything.
+    allowance
+        How long runs may begin; left out: for the wall time of the bounds from now on.
     """
 
     def __init__(
@@ -81,14 +109,16 @@ class Trials:
         lateness: Lateness,
         folder: Path | None = None,
         progress: Progress | None = None,
+        allowance: Allowance | None = None,
+        glance: Glance | None = None,
     ) -> None:
         self.base, self.tolerance_s = base, tolerance_s
-        self._lateness, self._folder, self._progress = lateness, folder, progress
+        self._lateness, self._folder, self._progress, self._glance = lateness, folder, progress, glance
         self._known: dict[str, dict[str, float]] = {} if folder is None else _read(folder / FILE)
         self._lock = threading.Lock()
-        self._stop = threading.Event()
-        self._until = time.monotonic() + base.remedies.wall_time_s
+        self._allowance = Allowance(base.remedies.wall_time_s) if allowance is None else allowance
         self._used: set[str] = set()
+        self._run_now: set[str] = set()
         self.planned = 0
 
     @property
@@ -97,14 +127,14 @@ class Trials:
         return len(self._used)
 
     @property
+    def reused(self) -> int:
+        """Number of those that an earlier search had run."""
+        return len(self._used - self._run_now)
+
+    @property
     def over(self) -> bool:
         """Whether nothing more may be tried."""
-        return self._stop.is_set() or time.monotonic() > self._until
-
-    def stop_if(self, over: bool) -> None:
-        """Let no further run begin if all is over."""
-        if over:
-            self._stop.set()
+        return self._allowance.over
 
     def run(self, changes: Iterable[str]) -> Trial:
         """Return how late trains are with changes.
@@ -119,26 +149,45 @@ class Trials:
         try:
             changed = apply_changes(self.base, changes)
             key = _key(changed)
-            with self._lock:
-                late = self._known.get(key)
-            if late is None:
-                late = {name: float(value) for name, value in self._lateness(changed).items()}
-                self._keep(key, late)
+            trial = self._glanced(changed, key) or judged(self._late(changed, key, key), self.tolerance_s)
         except InputError:
             return REFUSED
-        self._used.add(key)
-        return judged(late, self.tolerance_s)
+        with self._lock:
+            is_new = key not in self._used
+            self._used.add(key)
+            if is_new and self._progress is not None:
+                self._progress(self.tried, max(self.planned, self.tried))
+        return trial
 
-    def _keep(self, key: str, late: dict[str, float]) -> None:
+    def _glanced(self, changed: Scenario, key: str) -> Trial | None:
+        """Return the trial of a change that leaves a train late in the glance, None where the whole has to be run."""
+        glance = self._glance
+        if glance is None or key in self._known:
+            return None
+        short = changed.model_copy(update={"clock": glance.clock})
+        late = self._late(short, _key(short), key)
+        if judged(late, self.tolerance_s).late.keys().isdisjoint(glance.seen):
+            return None
+        return replace(judged({**late, **glance.beyond}, self.tolerance_s), is_partial=True)
+
+    def _late(self, scenario: Scenario, key: str, of: str) -> dict[str, float]:
+        """Return how late trains are in a run [s], from memory if it has been made; `of` is the key of the changed study."""
+        with self._lock:
+            known = self._known.get(key)
+        if known is not None:
+            return known
+        late = {name: float(value) for name, value in self._lateness(scenario).items()}
+        self._keep(key, late, of)
+        return late
+
+    def _keep(self, key: str, late: dict[str, float], of: str) -> None:
         with self._lock:
             self._known[key] = late
-            self._used.add(key)
+            self._run_now.add(of)
             if self._folder is not None:
                 with failures_told(self._folder, what="trials of the search"):
                     self._folder.mkdir(parents=True, exist_ok=True)
                     write_json(self._folder / FILE, {"format": 1, "trials": _told(self._known)})
-            if self._progress is not None:
-                self._progress(self.tried, max(self.planned, self.tried))
 
 
 def judged(late: Mapping[str, float], tolerance_s: float) -> Trial:

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 
 from tractionpower.errors import InputError
 from tractionpower.model.change import apply_changes
 from tractionpower.model.scenario import Scenario
 from tractionpower.studies.feasibility import Judgement
+from tractionpower.studies.remedies.allowance import Allowance
 from tractionpower.studies.remedies.remedy import Remedy
 
 
 def verify(
-    remedies: Sequence[Remedy], scenario: Scenario, judgement: Judgement, judge: Callable[[Scenario], Judgement]
+    remedies: Sequence[Remedy],
+    scenario: Scenario,
+    judgement: Judgement,
+    judge: Callable[[Scenario], Judgement],
+    allowance: Allowance | None = None,
 ) -> list[Remedy]:
     """Return remedies, the cheapest of those that hold verified and put first.
 
@@ -30,14 +35,21 @@ def verify(
         The study, and its judgement.
     judge
         Judges a scenario.
+    allowance
+        How long to go on; the first is verified even when that is over, unless Ctrl-C came.
     """
+    allowance = Allowance() if allowance is None else allowance
     most = scenario.remedies.most_verified
     chosen = [remedy for remedy in remedies if remedy.feasible][:most]
     before = overlaps(judgement)
-    with ThreadPoolExecutor(scenario.remedies.workers) as pool:
-        done = list(pool.map(lambda remedy: _judged(remedy, scenario, before, judge), chosen))
-    rest = [replace(remedy, verified=False) if remedy.feasible else remedy for remedy in remedies if remedy not in chosen]
-    rows = [*done, *rest]
+
+    def try_one(number: int, remedy: Remedy) -> Remedy | None:
+        is_due = number == 0 and not allowance.stopped
+        return _judged(remedy, scenario, before, judge) if is_due or not allowance.over else None
+
+    tasks = [partial(try_one, number, remedy) for number, remedy in enumerate(chosen)]
+    known = dict(zip(chosen, allowance.run_all(tasks, scenario.remedies.workers), strict=True))
+    rows = [known.get(remedy) or (replace(remedy, verified=False) if remedy.feasible else remedy) for remedy in remedies]
     return sorted(rows, key=lambda remedy: (not (remedy.feasible and remedy.verified), not remedy.feasible))
 
 

@@ -7,9 +7,12 @@ import pytest
 
 from tractionpower.cosimulation.check import check_scenario
 from tractionpower.errors import UsageError
+from tractionpower.io.imports.tables.cell_times import CellTime
+from tractionpower.io.imports.tables.matrix_form import Entry, runs_upwards
 from tractionpower.io.imports.tables.reading import read_table_timetable
 from tractionpower.io.scenario_files import load_scenario
 from tractionpower.io.text_files import write_files
+from tractionpower.model.line import Station
 
 LONG = (
     "train,station,arrival,departure,min_dwell_s,stops\n"
@@ -103,6 +106,47 @@ def test_a_matrix_with_stations_across(trains_of):
     assert second["train"] == "local"
     assert second["calls"][0] == {"station": "A", "departure": "07:00:00"}
     assert {call["station"] for call in second["calls"] if call.get("stops", True)} == {"A", "C"}
+
+
+UP_AND_DOWN = (
+    "Station;;11;12;14\nAlfa;dep;06:00:00;06:17;00:20\nŁódź Bravo;arr;06:03;06:13;\n;dep;06:03:20;06:14;00:01\n"
+    "Papa;;(06:05);;\nCharlie;arr;6:06:30;06:10;23:50\n"
+)
+
+
+def test_columns_that_run_upwards_are_read_upwards(read, trains_of):
+    down, up, night = trains_of(UP_AND_DOWN)
+    assert [call["station"] for call in down["calls"]] == ["A", "B", "P", "C"]
+    calls = [{name: value for name, value in call.items() if name != "min_dwell_s"} for call in up["calls"]]
+    assert up["route"] == TRAIN_12["route"]
+    assert calls == TRAIN_12["calls"]  # arrival 06:13 and departure 06:14 at B, whose row of departures comes first from below
+    assert [call["station"] for call in night["calls"]] == ["C", "B", "A"]
+    assert (night["calls"][0]["departure"], night["calls"][2]["arrival"]) == ("23:50:00", "24:20:00")
+    (note,) = [line for line in read(UP_AND_DOWN).notes.read if "bottom" in line]
+    assert note.endswith("read from the bottom to the top, as their times run: '12', '14'")
+
+
+def test_rows_that_run_from_right_to_left(read, trains_of):
+    text = "train,A,B,P,C\n11,06:00,06:03,,06:07\n12,06:17,06:13,,06:10\n"
+    assert [[call["station"] for call in train["calls"] if call.get("stops", True)] for train in trains_of(text)] == [
+        ["A", "B", "C"],
+        ["C", "B", "A"],
+    ]
+    assert any("from right to left" in line for line in read(text).notes.read)
+
+
+@pytest.mark.parametrize(
+    ("hours", "upwards"),
+    [
+        ((6, 7, 8), False), ((8, 7, 6), True), ((23, 24, 1), False), ((1, 24, 23), True), ((23.5, 0.5), False),
+        ((0.5, 23.5), True), ((6,), False), ((), False), ((6, None, 5), True),
+    ],
+)  # fmt: skip
+def test_the_direction_of_times(hours, upwards):
+    stations = [Station(id=f"S{k}", name="S", km=float(k)) for k in range(len(hours))]
+    times = [None if hour is None else hour * 3600.0 for hour in hours]
+    entries = [Entry((k, 0), station, CellTime(time), "") for k, (station, time) in enumerate(zip(stations, times, strict=True))]
+    assert runs_upwards(entries) is upwards
 
 
 def test_both_forms_tell_the_same(trains_of):

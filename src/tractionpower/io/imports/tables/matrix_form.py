@@ -1,10 +1,11 @@
-"""Timetables as a matrix: stations down and trains across, or the other way."""
+"""Timetables as a matrix: stations down and trains across, or the other way; a return direction may run upwards in it."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from tractionpower.io.excel import Cell, Sheet
 from tractionpower.io.imports.imported import Notes
@@ -17,6 +18,9 @@ from tractionpower.model.line import Station
 
 _WORDS = ("train_type", "category", "days")
 _KINDS = ("arrival", "departure", "time")
+
+MIDNIGHT_S = 18 * 3600.0
+"""A train that seems to need longer from a call to the next, or comes so much earlier, has passed midnight [s]."""
 
 At = tuple[int, int]
 """Row and column of a cell."""
@@ -53,6 +57,16 @@ class Matrix:
     def at(self, station: int, train: int) -> At:
         """Return row and column of the cell of a station's index and a train's."""
         return (station, train) if self.down else (train, station)
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A time of a train: its cell, the station, what is said, which kind of time the row is for."""
+
+    at: At
+    station: Station
+    said: CellTime
+    kind: str
 
 
 def find_matrix(sheet: Sheet, names: StationNames) -> Matrix | None:
@@ -126,7 +140,7 @@ def _without_kind(text: str) -> tuple[str, str]:
 
 def read_matrix(sheet: Sheet, matrix: Matrix, names: StationNames, notes: Notes) -> list[Draft]:
     """Return the trains of a matrix from left to right, or from top to bottom."""
-    drafts = []
+    drafts, upwards = [], []
     found = {index: names.find(name, sheet, *matrix.at(index, matrix.beside)) for index, name, _ in matrix.stations
              if _has_times(sheet, matrix, index)}  # fmt: skip
     others = [name for index, name, _ in matrix.stations if index not in found and not names.knows(name)]
@@ -145,19 +159,20 @@ def read_matrix(sheet: Sheet, matrix: Matrix, names: StationNames, notes: Notes)
         for name, index in matrix.words.items():
             row, at = matrix.at(index, column)
             setattr(draft, name, text_of(sheet.rows[row][at]))
+        entries = []
         for index, _, kind in matrix.stations:
-            row, at = matrix.at(index, column)
-            said = time_at(sheet, row, at, notes.problems) if index in found else None
+            cell = matrix.at(index, column)
             station = found.get(index)
-            if said is None or station is None:
-                continue
-            before = draft.stops[-1] if draft.stops else None
-            # A station that follows itself is a row of arrivals and one of departures.
-            if before is not None and before.station is station and kind != "arrival":
-                before.arrival, before.departure = before.arrival or before.departure, said
-            else:
-                draft.stops.append(_stop(row, at, station, said, kind))
+            said = time_at(sheet, *cell, notes.problems) if index in found else None
+            if said is not None and station is not None:
+                entries.append(Entry(cell, station, said, kind))
+        is_reversed = runs_upwards(entries)
+        upwards += [number] * is_reversed
+        draft.stops += _stops(entries[:: -1 if is_reversed else 1], is_reversed=is_reversed)
         drafts.append(draft)
+    if upwards:
+        way = "from the bottom to the top" if matrix.down else "from right to left"
+        notes.read.append(f"{sheet.label}: read {way}, as their times run: {', '.join(map(shown, upwards))}")
     if not drafts:
         notes.problems.append(
             sheet.problem("no_trains", *matrix.at(matrix.head, matrix.beside), "no number of a train", "a row of them")
@@ -165,13 +180,37 @@ def read_matrix(sheet: Sheet, matrix: Matrix, names: StationNames, notes: Notes)
     return drafts
 
 
-def _stop(row: int, column: int, station: Station, said: CellTime, kind: str) -> Stop:
-    stop = Stop(row, column, station)
-    if kind == "arrival":
-        stop.arrival = said
-    else:
-        stop.departure = said
-    return stop
+def runs_upwards(entries: Sequence[Entry]) -> bool:
+    """Tell whether the times of a train, in the order of the sheet, run from its end to its start.
+
+    Times at one station say nothing, arrivals may stand above departures whatever the direction. A step of more than
+    `MIDNIGHT_S` is taken to lead over midnight.
+    """
+    timed = [(entry.station.id, entry.said.seconds) for entry in entries if entry.said.seconds is not None]
+    steps = [after - before for (here, before), (there, after) in pairwise(timed) if here != there]
+    steps = [-step if abs(step) > MIDNIGHT_S else step for step in steps]
+    return sum(step < 0.0 for step in steps) > sum(step > 0.0 for step in steps)
+
+
+def _stops(entries: Sequence[Entry], *, is_reversed: bool) -> list[Stop]:
+    """Return the calls of a train from its times in the order of the run; `is_reversed`: against that of the sheet."""
+    stops: list[Stop] = []
+    for entry in entries:
+        before = stops[-1] if stops else None
+        # A station that follows itself is a row of arrivals and one of departures.
+        if before is not None and before.station is entry.station and entry.kind != "arrival":
+            before.arrival, before.departure = before.arrival or before.departure, entry.said
+        elif before is not None and before.station is entry.station and is_reversed and before.arrival is None:
+            before.arrival = entry.said
+        else:
+            stop = Stop(*entry.at, entry.station)
+            stop.arrival, stop.departure = (entry.said, None) if entry.kind == "arrival" else (None, entry.said)
+            stops.append(stop)
+    if is_reversed and stops:  # the words beside its ends are those of the other direction
+        first, last = stops[0], stops[-1]
+        first.arrival, first.departure = (None, first.arrival) if first.departure is None else (first.arrival, first.departure)
+        last.arrival, last.departure = (last.departure, None) if last.arrival is None else (last.arrival, last.departure)
+    return stops
 
 
 def _has_times(sheet: Sheet, matrix: Matrix, index: int) -> bool:
