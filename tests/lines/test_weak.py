@@ -98,6 +98,6 @@ def test_the_search_is_deterministic_and_goes_on_where_it_was(study, judgement, 
     again = search(study, judgement, lambda done, total: told.append((done, total)), folder=tmp_path)
     assert again == remedies
     assert told[-1][0] == again.tried <= told[-1][1]
-    runs = []
-    kept = search(study, judgement, lambda done, total: runs.append(done), folder=tmp_path)
-    assert (kept, runs) == (remedies, [])
+    kept = search(study, judgement, folder=tmp_path)
+    assert kept == remedies
+    assert (again.reused, kept.reused) == (0, remedies.tried)
