@@ -2,6 +2,7 @@
 
 import math
 import threading
+from dataclasses import replace
 
 import pytest
 from remedy_cases import judged, small_study
@@ -229,6 +230,19 @@ def test_what_the_bounds_have_no_room_for_is_named(study):
     remedies = Model(shift=0.3).search(apply_changes(study, ["remedies.most_runs=25"]))
     assert 0 < remedies.tried <= 25
     assert any(note.startswith("Not tried") and "current_cap of Y" in note for note in remedies.notes)
+
+
+def test_proposals_are_verified_with_the_tolerance_of_the_judgement(study, monkeypatch):
+    model, asked = Model(shift=0.3, cap=0.1), []
+
+    def judge(scenario, *, tolerance_s):
+        asked.append(tolerance_s)
+        return model.judge(scenario)
+
+    monkeypatch.setattr("tractionpower.studies.feasibility.judge", judge)
+    judgement = replace(judged({"X": LATE_S, "Y": 0.0}), tolerance_s=3.0)
+    assert search(study, judgement, lateness=model.lateness).best is not None
+    assert set(asked) == {3.0}
 
 
 def test_only_kinds_that_are_allowed_are_tried():

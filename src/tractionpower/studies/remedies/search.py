@@ -84,7 +84,7 @@ def search(
             scenario,
             judgement,
             lateness or feasibility.lateness,
-            judge or feasibility.judge,
+            judge or partial(feasibility.judge, tolerance_s=judgement.tolerance_s),
             Path(folder) if folder is not None else None,
             progress,
         )
