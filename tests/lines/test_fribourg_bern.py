@@ -55,7 +55,7 @@ def test_the_licence_stands_beside_the_data():
     assert "BSD-2" in (FOLDER / "README.md").read_text(encoding="utf-8") or b"BSD 2-Clause" in licence
 
 
-FLAT_OUT = ("timetable.driving.kind=flat_out",)
+FLAT_OUT = ('timetable.driving={"kind": "flat_out"}',)
 
 
 def arrivals_of(results):
