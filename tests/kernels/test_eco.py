@@ -19,6 +19,7 @@ from tractionpower.kernels.eco import (
     cost_of,
     follow,
     lay_choices,
+    lay_floors,
     lay_slopes,
     sweep,
     tabulate_drive,
@@ -77,14 +78,16 @@ def small_way(count=5, length_m=200.0):
     drives = np.zeros((1, 600, COLUMNS))
     tabulate_drive(movement.tables, 0, np.zeros(1, MOVER), LINES, 0.1, drives[0])
     stages = np.zeros(count, STAGE)
-    stages["from_m"], stages["length_m"] = np.arange(count) * length_m, length_m
+    stages["from_m"], stages["length_m"], stages["back"] = np.arange(count) * length_m, length_m, 1.0
     lay_slopes(movement.tables, 0, np.zeros(1, MOVER), stages)
     stages["constant_n"] = np.array([0.0, 8000.0, -6000.0, 0.0, 9000.0])[:count]
     train, eco = movement.tables.trains[0], np.zeros(1, ECO)
     for name in ("inertia_kg", "a_n", "b_ns_per_m", "c_ns2_per_m2"):
         eco[name] = train[name]
     eco["gain"], eco["back"], eco["dv"], eco["level_v"], eco["slow_w"] = 0.8, 1.0, 0.1, 0.25, 25.0
-    return stages, np.full(count + 1, 900.0), drives, eco
+    ceilings = np.full(count + 1, 900.0)
+    lay_floors(stages, ceilings, drives, eco)
+    return stages, ceilings, drives, eco
 
 
 def best_way(price, switch_s=0.0):

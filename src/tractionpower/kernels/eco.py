@@ -48,6 +48,8 @@ STAGE = np.dtype(
         ("service_mps2", "f8"),  # deceleration of the service brake, gradient included
         ("drive", "i8"),  # table of the drive
         ("part", "i8"),  # price of time that holds
+        ("back", "f8"),  # share of what the brake feeds back that is taken at the voltage here
+        ("floor_w", "f8"),  # square of the speed at its end below which the train does not coast (`lay_floors`)
     ]
 )
 """A stage of the way."""
@@ -60,7 +62,7 @@ ECO = np.dtype(
         ("c_ns2_per_m2", "f8"),
         ("own_w", "f8"),  # auxiliaries, which braking feeds first
         ("gain", "f8"),  # efficiency of the electric brake where it feeds back, else 0
-        ("back", "f8"),  # share of what is fed back that counts
+        ("back", "f8"),  # share of what is fed back and taken that counts
         ("slow_w", "f8"),  # square of the lowest cruising speed
         ("dv", "f8"),  # between rows of the drive, and between levels of the value
         ("level_v", "f8"),
@@ -70,6 +72,8 @@ ECO = np.dtype(
 
 _CRAWL_MPS = 0.05
 _LEAST_W = 1e-4
+_DEAR, _STALLED = 30.0, 1e6  # for a square of the speed [J/(kg m2/s2)], and beside that [J/kg]
+_ARRIVING_W = 9.0  # square of the speed at which a train coasts to a stop, at least
 
 
 @njit
@@ -158,6 +162,23 @@ def _resistance(eco, stage, v):
     return eco.a_n + stage.constant_n + (eco.b_ns_per_m + (eco.c_ns2_per_m2 + stage.drag) * v) * v
 
 
+@njit
+def lay_floors(stages, ceilings, drives, eco_of):
+    """Fill down to which speed a train may coast: to the lowest cruising speed, and below it where that leads to the stop.
+
+    Where there is no power, and before that, it is the lowest cruising speed: a train must not come to a stand there.
+    """
+    eco, last = eco_of[0], stages.shape[0]
+    floor = min(_ARRIVING_W, eco.slow_w) if ceilings[last] < _ARRIVING_W else eco.slow_w
+    for i in range(last - 1, -1, -1):
+        if drives[stages[i].drive, 0, FULL_N] <= 0.0:
+            floor = eco.slow_w
+        stages[i].floor_w = floor
+        if floor < eco.slow_w:
+            needed = floor + 2.0 * stages[i].length_m / eco.inertia_kg * _resistance(eco, stages[i], np.sqrt(floor))
+            floor = min(max(needed, min(_ARRIVING_W, eco.slow_w)), eco.slow_w)
+
+
 @inlined
 def _led_to(drive, eco, stage, w, share, column):
     """Return the w [m2/s2] to which a share of a column's effort leads: the midpoint rule, by two predictions."""
@@ -174,7 +195,7 @@ def _led_to(drive, eco, stage, w, share, column):
 
 @inlined
 def _reach(drive, eco, stage, w, ceiling):
-    """Return the w at the end of a stage by each control, clipped to the ceiling and the lowest cruising speed."""
+    """Return the w at the end of a stage by each control, clipped to the ceiling and to the lowest speeds."""
     high = min(max(_led_to(drive, eco, stage, w, 1.0, FULL_N), _LEAST_W), ceiling)
     coast = _led_to(drive, eco, stage, w, 0.0, FULL_N)
     low = min(max(w - 2.0 * stage.service_mps2 * stage.length_m, eco.slow_w), high)
@@ -182,7 +203,8 @@ def _reach(drive, eco, stage, w, ceiling):
     if eco.gain > 0.0:
         electric = _led_to(drive, eco, stage, w, -1.0, BRAKE_N)
     hold = min(max(w, low), high)
-    return high, 0.5 * (hold + high), hold, min(max(coast, low), high), min(max(electric, low), high), low
+    coast = min(max(coast, min(low, stage.floor_w)), high)
+    return high, 0.5 * (hold + high), hold, coast, min(max(electric, low), high), low
 
 
 @inlined
@@ -201,7 +223,16 @@ def _price(drive, eco, stage, w, after):
         return (below + (x - n) * (_at(drive, row, FIRST_POWER + n + 1) - below)) * spent, spent
     gained = eco.gain * min(-force, _at(drive, row, BRAKE_N)) * v
     own = min(gained, eco.own_w)
-    return -(own + eco.back * (gained - own)) * spent, spent
+    return -(own + eco.back * stage.back * (gained - own)) * spent, spent
+
+
+@inlined
+def _too_slow(eco, stage, w, after):
+    """Return what it costs to be slower than the train may be and not to accelerate [J]: who loses time would stall."""
+    if after > w:
+        return 0.0
+    stalls = _STALLED if after <= _LEAST_W else 0.0
+    return eco.inertia_kg * (stalls + _DEAR * max(stage.floor_w - after, 0.0))
 
 
 @inlined
@@ -238,7 +269,8 @@ def lay_choices(stages, ceilings, drives, eco_of, choices):
             reached = _reach(drive, eco, stage, w, ceiling)
             for c in range(CONTROLS):
                 energy, spent = _price(drive, eco, stage, w, reached[c])
-                choices[i, j, c, 0], choices[i, j, c, 1] = energy, spent
+                slow = _too_slow(eco, stage, w, reached[c]) if ceiling >= stage.floor_w else 0.0
+                choices[i, j, c, 0], choices[i, j, c, 1] = energy + slow, spent
                 choices[i, j, c, 2] = _cell(eco, reached[c], ceiling, levels)
             if w >= ceilings[i]:
                 break
@@ -256,7 +288,7 @@ def sweep(stages, ceilings, eco_of, choices, prices, switch_s, value):
     Parameters
     ----------
     prices : ndarray
-        Prices of time by part [W].
+        Prices of time by part [W]; below 0 time is paid for: the train brakes and runs slowly to lose it.
     switch_s : float
         What a change of the mode costs, as a time [s]. Holding a speed and running up and down about it need nearly the same
         energy, so without this cost the control would chatter.
@@ -265,7 +297,7 @@ def sweep(stages, ceilings, eco_of, choices, prices, switch_s, value):
     value[last] = 0.0
     for i in range(last - 1, -1, -1):
         price = prices[stages[i].part]
-        change = price * switch_s
+        change = abs(price) * switch_s
         for j in range(levels):
             best = np.inf
             for mode in range(MODES):
@@ -310,13 +342,24 @@ def follow(stages, ceilings, drives, eco_of, prices, value, switch_s, squares):
             n = int(x)
             ahead = value[i + 1, mode, n] + (x - n) * (value[i + 1, mode, n + 1] - value[i + 1, mode, n])
             cost = energy + price * spent + ahead
+            if ceiling >= stage.floor_w:
+                cost += _too_slow(eco, stage, w, reached[c])
             if mode != before:
-                cost += price * switch_s
+                cost += abs(price) * switch_s
             if cost < best:
                 best, chosen, paid = cost, c, energy
         squares[i + 1], before = reached[chosen], _mode(chosen)
         total += paid
     return total
+
+
+@njit
+def keep_to_effort(stages, drives, eco_of, squares):
+    """Lower `squares` [m2/s2] to what the greatest effort comes to."""
+    for i in range(stages.shape[0]):
+        stage = stages[i]
+        high = _led_to(drives[stage.drive], eco_of[0], stage, squares[i], 1.0, FULL_N)
+        squares[i + 1] = min(squares[i + 1], max(high, _LEAST_W))
 
 
 @njit

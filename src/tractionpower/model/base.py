@@ -11,6 +11,9 @@ from pydantic_core import PydanticCustomError
 FORMAT = 1
 """Version of the input files and results that this program reads and writes."""
 
+DAY_S = 86_400.0
+"""Length of a day [s]."""
+
 Format = Annotated[Literal[1], Field(description="Version of the file format.")]
 
 

@@ -29,6 +29,12 @@ class _OnTime(Declaration):
     late_after_s: Real = field(
         "late_after_s", "Lateness from which on a train is driven flat out until it is on time.", at_least=0, default=1.0
     )
+    voltage_v: Real | None = field(
+        "voltage_v",
+        "Voltage at the pantograph for which the plan is made, by which it is on time; left out: the nominal one.",
+        above=0,
+        default=None,
+    )
 
 
 class Rules(_OnTime):
@@ -73,7 +79,7 @@ class _Saving(_OnTime):
         default=100.0,
     )
     slowest_kmh: Real = field(
-        "slowest_kmh", "No slower cruising than this; time left is waited at the next stop.", above=0, default=20.0
+        "slowest_kmh", "No slower cruising than this, only coasting to a stop; time left is waited there.", above=0, default=20.0
     )
 
 

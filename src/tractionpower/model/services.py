@@ -7,11 +7,8 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import get_args
 
-from tractionpower.model.base import format_time
+from tractionpower.model.base import DAY_S, format_time
 from tractionpower.model.timetable import Call, Day, Service, Start, Timetable, TrainRun
-
-DAY_S = 86_400.0
-"""Length of a day [s]."""
 
 DAY_BEFORE = " (day before)"
 """Ends the name of a run of the day before that is still on the line at midnight."""

@@ -7,16 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.kernels.journey import OUT_OF_ROWS, run_journey
-from tractionpower.kernels.train_tables import GONE, STAYING, TRAIN_ROW, TrainTables, new_train_state
+from tractionpower.kernels.journey import run_journey
+from tractionpower.kernels.train_tables import GONE, STAYING, TrainTables, new_train_state
+from tractionpower.movement.blocks_of_rows import blocks_of_rows
 from tractionpower.movement.compile import Movement
 
 Floats = NDArray[np.float64]
 
-LONGEST_S = 48 * 3600.0
-"""A run that takes longer is given up."""
-
-_BLOCK = 4096
 _SAME_M = 1e-6
 
 
@@ -92,17 +89,15 @@ def run_alone(tables: TrainTables, k: int, clock: tuple[float, float], voltage: 
     own = slice(int(train["first_stop"]), int(train["first_stop"] + train["stops"]))
     state = new_train_state(tables._replace(trains=tables.trains[k : k + 1], stops=tables.stops))
     alone = tables._replace(trains=tables.trains[k : k + 1])
-    buffer, parts = np.zeros(_BLOCK, TRAIN_ROW), []
-    (start, step), end = clock, OUT_OF_ROWS
-    while end == OUT_OF_ROWS and start - clock[0] < LONGEST_S:
-        count, end, start = run_journey(alone, state, 0, (start, step), voltage, buffer)
-        parts.append(np.stack([buffer[name][:count] for name in ("time_s", "s_m", "v_mps")]))
+    parts, start = [], clock[0]
+    for rows, _, start in blocks_of_rows(run_journey, (alone, state, 0), clock, voltage):  # noqa: B007 - its last value
+        parts.append(np.stack([rows[name] for name in ("time_s", "s_m", "v_mps")]))
     mover = state.movers[0]
     is_done = mover["status"] in (STAYING, GONE)
     last = (float(mover["finished_s"]) if is_done else start, float(mover["s_m"]), float(mover["v_mps"]))
-    rows = np.concatenate([*parts, np.array(last)[:, None]], axis=1)
+    steps = np.concatenate([*parts, np.array(last)[:, None]], axis=1)
     stops = tables.stops[own]
-    return _running_times(float(train["start_s"]), stops, (state.arrived_s[own], state.left_s[own]), rows)
+    return _running_times(float(train["start_s"]), stops, (state.arrived_s[own], state.left_s[own]), steps)
 
 
 def running_at_calls(start_s: float, stops: NDArray[np.bool_], arrived_s: Floats, left_s: Floats) -> Floats:

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from tractionpower.alignment.path import RoutePath
 from tractionpower.kernels.journey import ARRIVED, OUT_OF_ROWS, STUCK, run_journey
 from tractionpower.kernels.speed_form import run_over_speed
-from tractionpower.kernels.train_tables import POINT, TRAIN_ROW, TrainState, new_train_state
+from tractionpower.kernels.train_tables import POINT, TrainState, new_train_state
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.timetable import TrainRun
+from tractionpower.movement.blocks_of_rows import blocks_of_rows
 from tractionpower.movement.compile import Movement, PlannedRun
 from tractionpower.movement.driving.driven import compile_driven
 from tractionpower.movement.formation import Formation
@@ -25,10 +26,6 @@ Status = Literal["complete", "stuck", "unfinished"]
 Voltage = float | Sequence[tuple[float, float]]
 """A voltage [V], or points (distance of the front from the start of the route [m], voltage [V])."""
 
-LONGEST_S = 48 * 3600.0
-"""A journey that takes longer is left unfinished."""
-
-_BLOCK = 4096
 _STATUS: dict[int, Status] = {ARRIVED: "complete", STUCK: "stuck", OUT_OF_ROWS: "unfinished"}
 
 
@@ -100,6 +97,7 @@ def theoretical_journeys(
     step_s: float | None = None,
     form: Form = "time",
     runs: Sequence[str] | None = None,
+    plan_voltage: Voltage | None = None,
 ) -> list[Journey]:
     """Return the theoretical journeys of the trains of a scenario, by identifier (Krzysztozek 2019, eq. 1 to 4).
 
@@ -115,8 +113,10 @@ def theoretical_journeys(
         ``time``: eq. 1 and 2 in time steps; ``speed``: eq. 3 and 4 integrated over the speed.
     runs
         Identifiers of the runs; left out: all.
+    plan_voltage
+        Voltage for which driving plans are made that name none themselves; left out: the nominal one.
     """
-    movement = compile_driven(scenario, runs)
+    movement = compile_driven(scenario, runs, plan_voltage)
     nominal = movement.voltages.u_n
     own = voltage_v if isinstance(voltage_v, Mapping) else dict.fromkeys(movement.names, voltage_v)
     voltages = [_points(nominal if (given := own.get(name)) is None else given) for name in movement.names]
@@ -133,17 +133,14 @@ def _points(voltage_v: Voltage) -> NDArray[np.void]:
 def _run(movement: Movement, state: TrainState, k: int, voltage: NDArray[np.void], step: float, form: Form) -> Journey:
     planned = movement.runs[k]
     run = run_journey if form == "time" else run_over_speed
-    blocks, end, start = [], OUT_OF_ROWS, planned.start_s
-    while end == OUT_OF_ROWS and start - planned.start_s < LONGEST_S:
-        rows = np.zeros(_BLOCK, TRAIN_ROW)
-        count, end, start = run(movement.tables, state, k, (start, step), voltage, rows)
-        blocks.append(rows[:count])
+    blocks = list(blocks_of_rows(run, (movement.tables, state, k), (planned.start_s, step), voltage))
+    _, end, start = blocks[-1]
     train = movement.tables.trains[k]
     pieces = movement.tables.pieces[train["first_piece"] : train["first_piece"] + train["pieces"]]
     return Journey(
         run=planned.run,
         path=planned.path,
-        rows=np.concatenate(blocks),
+        rows=np.concatenate([rows for rows, _, _ in blocks]),
         calls=calls_of(planned, state, int(train["first_stop"])),
         status=_STATUS[end],
         start_s=planned.start_s,

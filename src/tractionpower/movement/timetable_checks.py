@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from tractionpower.errors import Problem
-from tractionpower.model.base import format_time
+from tractionpower.model.base import DAY_S, format_time
 from tractionpower.model.scenario import Clock
-from tractionpower.model.services import DAY_S
 from tractionpower.model.timetable import Call, TrainRun
 from tractionpower.movement.compile import start_time
 from tractionpower.movement.declared import Declared

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -39,8 +40,9 @@ class Link:
 
 def declared_links(timetable: Timetable) -> Iterator[Link]:
     """Yield the links of a timetable as declared."""
+    counts = Counter(rotation.id for rotation in timetable.rotations)
     for k, rotation in enumerate(timetable.rotations):
-        name = rotation.id if [item.id for item in timetable.rotations].count(rotation.id) == 1 and rotation.id else k
+        name = rotation.id if rotation.id and counts[rotation.id] == 1 else k
         for n, (first, then) in enumerate(pairwise(rotation.runs), start=1):
             yield Link(f"timetable.rotations[{name}].runs[{n}]", first, then, rotation.turn_round_s, "rotation")
     for k, join in enumerate(timetable.joins):

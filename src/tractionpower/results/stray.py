@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tractionpower.model.base import DAY_S
 from tractionpower.model.limits import Limit, common_limits
 
 Array = NDArray[np.float64]
 
 PREFIX = "stray_"
-DAY_S = 86400.0
 _TOLERANCE = 1e-9
 M_PER_KM = MA_PER_A = 1000.0
 

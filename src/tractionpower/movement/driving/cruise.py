@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +15,8 @@ from tractionpower.movement.compile import Movement, ceiling_of
 from tractionpower.movement.driving.eco_legs import Floats, LegModel, Supplies, cut_stages
 from tractionpower.movement.driving.eco_pieces import cut_ceiling
 from tractionpower.movement.driving.eco_targets import Group
+
+Rows = NDArray[np.void]
 
 _HALVINGS = 16
 _LOWEST = 0.02
@@ -29,6 +33,7 @@ class CruiseRun:
     eco: NDArray[np.void]
     drives: Floats
     scaled: dict[float, NDArray[np.void]] = field(default_factory=dict)
+    times: dict[tuple[Any, ...], float] = field(default_factory=dict)
 
     def ceiling(self, factor: float, slowest_mps: float) -> NDArray[np.void]:
         """Return the ceiling with all limits times `factor`, none that is higher reduced below `slowest_mps`."""
@@ -42,8 +47,14 @@ class CruiseRun:
     def time(self, group: Group, factor: float, slowest_mps: float) -> float:
         """Return the running time of a group up to the end of its last part with a time [s]."""
         until = max(end for end, seconds in group.parts if not np.isnan(seconds))
-        pieces, total = self.ceiling(factor, slowest_mps), 0.0
-        for low, high in zip(group.places_m[:-1], group.places_m[1:], strict=True):
+        key = (group.places_m, until, factor)
+        if key not in self.times:
+            self.times[key] = self._time(group.places_m, until, self.ceiling(factor, slowest_mps))
+        return self.times[key]
+
+    def _time(self, places_m: tuple[float, ...], until: float, pieces: NDArray[np.void]) -> float:
+        total = 0.0
+        for low, high in pairwise(places_m):
             mark = [until - low] if low < until < high else []
             stages, ceilings, starts = cut_stages(
                 self.movement, self.k, pieces, self.supplies, (low, high), [low + m for m in mark]
@@ -55,17 +66,21 @@ class CruiseRun:
         return total
 
 
-def cruise_pieces(run: CruiseRun, groups: Sequence[Group], slowest_mps: float) -> tuple[NDArray[np.void], NDArray[np.void]]:
+def cruise_pieces(run: CruiseRun, groups: Sequence[Group], slowest_mps: float) -> tuple[Rows, Rows, list[float]]:
     """Return ceiling and caps of a run that cruises at a share of the speed limits, one share for each group of legs.
 
     A group with several parts meets the last of their times only: a change of the share in the middle of a leg would be a
-    jump of the ceiling downwards.
+    jump of the ceiling downwards. What a group is late by, the next one makes up for. The last value are the running times
+    of the groups until their last part with a time [s].
     """
     route_m, at, pieces = float(run.own["from_m"][-1]), 0.0, []
-    last = run.own[-1:].copy()
+    last, late, times = run.own[-1:].copy(), 0.0, []
     for group in groups:
         low, high = group.places_m[0], group.places_m[-1]
-        factor = _factor(run, group, slowest_mps)
+        target = sum(seconds for _, seconds in group.parts if not np.isnan(seconds)) - late
+        factor = _factor(run, group, target, slowest_mps)
+        times.append(run.time(group, factor, slowest_mps))
+        late = max((times[-1] - target if factor >= 1.0 else 0.0) - group.spare_s, 0.0)
         if low > at:
             pieces.append(cut_ceiling(run.own, at, low))
         ceiling = run.ceiling(factor, slowest_mps) if factor < 1.0 else run.own
@@ -74,12 +89,11 @@ def cruise_pieces(run: CruiseRun, groups: Sequence[Group], slowest_mps: float) -
     if at < route_m:
         pieces.append(cut_ceiling(run.own, at, route_m))
         last = run.own[-1:].copy()
-    return np.concatenate((*pieces, last)), np.array([(0.0, 1.0)], POINT)
+    return np.concatenate((*pieces, last)), np.array([(0.0, 1.0)], POINT), times
 
 
-def _factor(run: CruiseRun, group: Group, slowest_mps: float) -> float:
-    """Return the factor of the speed limits, a multiple of a power of 1/2, with which a group takes its time."""
-    target = sum(seconds for _, seconds in group.parts if not np.isnan(seconds))
+def _factor(run: CruiseRun, group: Group, target: float, slowest_mps: float) -> float:
+    """Return the factor of the speed limits, a multiple of a power of 1/2, with which a group takes a time [s]."""
     if run.time(group, 1.0, slowest_mps) >= target:
         return 1.0
     low, high = 0.0, 1.0

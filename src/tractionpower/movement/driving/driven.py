@@ -2,33 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+import logging
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tractionpower.kernels.journey import OUT_OF_ROWS, run_journey
-from tractionpower.kernels.train_tables import POINT, TRAIN_ROW, new_train_state
+from tractionpower.kernels.train_tables import POINT
 from tractionpower.model.driving import Driving, Eco, FlatOut, Rules
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.timetable import TrainRun
 from tractionpower.movement.compile import Movement, PlannedRun, compile_trains
-from tractionpower.movement.driving.dues import Times, dues_of
-from tractionpower.movement.driving.optimal import Saving, Voltage, optimal_plans
-from tractionpower.movement.driving.plan import Plan, Rows, lay_plans
+from tractionpower.movement.driving.dues import dues_of
+from tractionpower.movement.driving.optimal import Planner, PlanRows, Saving, SavingPlan, Voltage
+from tractionpower.movement.driving.plan import Plan, lay_plans
+from tractionpower.movement.driving.plan_runs import AlonePlan, PlanRuns
 from tractionpower.movement.driving.rules import hold_floor, rule_plan
 from tractionpower.movement.formation import KMH
 
+log = logging.getLogger(__name__)
+
+Floats = NDArray[np.float64]
+
 PLAN_STEP_S = 1.0
-"""Step in which a plan is run alone [s]."""
+"""Step in which a plan is run alone [s]; that of the clock if it is longer."""
 
-LONGEST_S = 48 * 3600.0
+MISSED_S = 0.2
+"""A plan that misses a time by more than this is corrected [s]."""
 
-_BLOCK = 4096
+CORRECTIONS = 2
+"""So often."""
+
+M_PER_KM = 1000.0
 
 
 def compile_driven(scenario: Scenario, runs: Sequence[str] | None = None, voltage: Voltage | None = None) -> Movement:
     """Return the trains of a scenario with the plans by which they are driven while they are on time.
+
+    A plan that does not bring its train to its end is given up: the train is driven flat out, and that is logged.
 
     Parameters
     ----------
@@ -37,25 +49,27 @@ def compile_driven(scenario: Scenario, runs: Sequence[str] | None = None, voltag
     runs
         Identifiers of the runs to take; left out: all.
     voltage
-        Voltage for which plans are made, by which they come to their calls on time: a number [V], or points (distance of the
-        front from the start of the route [m], voltage [V]); left out: the nominal one.
+        Voltage for which plans are made that name none themselves, by which they come to their calls on time: a number [V], or
+        points (distance of the front from the start of the route [m], voltage [V]); left out: the nominal one.
     """
     movement = compile_trains(scenario, runs)
     driving = {k: driving_of(item.run, scenario) for k, item in enumerate(movement.runs)}
     chosen = {k: how for k, how in driving.items() if not isinstance(how, FlatOut)}
     if not chosen:
         return movement
-    volts: Voltage = movement.voltages.u_n if voltage is None else voltage
-    rows = _rows(movement, chosen, volts)
-    plans = {k: Plan(*rows[k], np.zeros(0, POINT), how.late_after_s) for k, how in chosen.items()}
-    floors = {k: how.coast_down_to_kmh / KMH for k, how in chosen.items() if isinstance(how, Rules)}
-    floors = {k: floor for k, floor in floors.items() if floor > 0.0}
-    for k, alone in _run_alone(lay_plans(movement, plans), floors, volts):
-        pieces, caps = hold_floor(plans[k], alone.rows, floors[k])
-        plans[k] = replace(plans[k], pieces=pieces, caps=caps)
-    timed = [k for k in plans if not isinstance(chosen[k], Eco) and _has_times(movement.runs[k])]
-    for k, alone in _run_alone(lay_plans(movement, plans), timed, volts):
-        plans[k] = replace(plans[k], dues=dues_of(alone.rows, movement.runs[k].calls, alone.arrived_s, alone.left_s))
+    others: Voltage = movement.voltages.u_n if voltage is None else voltage
+    voltages = {k: others if how.voltage_v is None else how.voltage_v for k, how in chosen.items()}
+    plan_runs = PlanRuns(movement, max(PLAN_STEP_S, scenario.clock.step_s), voltages)
+    rules = {k: how for k, how in chosen.items() if isinstance(how, Rules)}
+    saving = {k: how for k, how in chosen.items() if not isinstance(how, Rules)}
+    plans = _by_rules(movement, rules, plan_runs) | _saving(movement, saving, voltages, plan_runs)
+    for k, alone in plan_runs.run(plans, list(plans)).items():
+        item = movement.runs[k]
+        if not np.isfinite(alone.finished_s):
+            _tell_given_up(item, alone)
+            del plans[k]
+        elif not isinstance(chosen[k], Eco) and _has_times(item):
+            plans[k] = replace(plans[k], dues=dues_of(alone.rows, item.calls, alone.arrived_s, alone.left_s))
     return lay_plans(movement, plans)
 
 
@@ -66,35 +80,65 @@ def driving_of(run: TrainRun, scenario: Scenario) -> Driving:
     return scenario.timetable.driving if scenario.timetable.driving is not None else FlatOut(kind="flat_out")
 
 
-def _rows(movement: Movement, chosen: Mapping[int, Rules | Saving], volts: Voltage) -> dict[int, tuple[Rows, Rows]]:
-    """Return ceiling and caps of the plans."""
-    rules = {k: rule_plan(movement.runs[k], how) for k, how in chosen.items() if isinstance(how, Rules)}
-    saving = [(k, how) for k, how in chosen.items() if not isinstance(how, Rules)]
-    return rules | (optimal_plans(movement, saving, volts) if saving else {})
+def _by_rules(movement: Movement, rules: dict[int, Rules], plan_runs: PlanRuns) -> dict[int, Plan]:
+    """Return the plans of trains that are driven by rules."""
+    plans = {k: _plan(rule_plan(movement.runs[k], how), how) for k, how in rules.items()}
+    floors = {k: how.coast_down_to_kmh / KMH for k, how in rules.items() if how.coast_down_to_kmh > 0.0}
+    for k, alone in plan_runs.run(plans, floors).items():
+        plans[k] = _plan(hold_floor(plans[k], alone.rows, floors[k]), rules[k])
+    return plans
+
+
+def _saving(movement: Movement, saving: dict[int, Saving], voltages: dict[int, Voltage], plan_runs: PlanRuns) -> dict[int, Plan]:
+    """Return the plans of trains that use spare time, corrected by the times that they take when they are run alone."""
+    planners: dict[object, Planner] = {}
+    for voltage in voltages.values():
+        if _hashable(voltage) not in planners:
+            planners[_hashable(voltage)] = Planner(movement, voltage)
+    own = {k: planners[_hashable(voltages[k])] for k in saving}
+    first = {k: own[k].plan(k, how) for k, how in saving.items()}
+    best = {k: (np.inf, plan) for k, plan in first.items()}
+    late = {k: np.zeros(plan.parts) for k, plan in first.items()}
+    tried = dict(first)
+    for n in range(CORRECTIONS + 1):
+        found = plan_runs.run({k: _plan(plan.rows, saving[k]) for k, plan in tried.items()}, list(tried))
+        again = {}
+        for k, alone in found.items():
+            missed = _missed(first[k], [plan_runs.seconds(k, alone, stretch) for stretch in first[k].stretches], n > 0)
+            worst = float(np.abs(missed).max(initial=0.0))
+            if worst < best[k][0]:
+                best[k] = worst, tried[k]
+            if worst > MISSED_S and n < CORRECTIONS:
+                late[k] += missed
+                again[k] = own[k].plan(k, saving[k], tuple(np.round(late[k], 3).tolist()))
+        tried = again
+    return {k: _plan(plan.rows, saving[k]) for k, (_, plan) in best.items()}
+
+
+def _missed(plan: SavingPlan, taken_s: Sequence[float], later: bool) -> Floats:
+    """Return by how much the parts of a plan take longer than is expected of them [s].
+
+    What has no time to spare stays late: it is told at the first time only, for the next ones to make up for it.
+    """
+    missed = np.zeros(plan.parts)
+    for stretch, seconds in zip(plan.stretches, taken_s, strict=True):
+        if np.isfinite(seconds) and not (later and stretch.is_shortest):
+            missed[stretch.part] = seconds - stretch.seconds
+    return missed
+
+
+def _plan(rows: PlanRows, how: Rules | Saving) -> Plan:
+    return Plan(*rows, np.zeros(0, POINT), how.late_after_s)
+
+
+def _hashable(voltage: Voltage) -> object:
+    return voltage if isinstance(voltage, int | float) else tuple(map(tuple, voltage))
 
 
 def _has_times(item: PlannedRun) -> bool:
     return any(planned.call.arrival is not None or planned.call.departure is not None for planned in item.calls)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Alone:
-    # A plan run alone: its steps, and when it is at its calls.
-    rows: Rows
-    arrived_s: Times
-    left_s: Times
-
-
-def _run_alone(movement: Movement, chosen: Iterable[int], volts: Voltage) -> Iterator[tuple[int, _Alone]]:
-    """Run the trains of some numbers alone by their plans, which have no dues."""
-    state = new_train_state(movement.tables)
-    voltage = np.array([(0.0, volts)] if isinstance(volts, int | float) else list(volts), POINT)
-    for k in chosen:
-        item, train = movement.runs[k], movement.tables.trains[k]
-        blocks, end, start = [], OUT_OF_ROWS, item.start_s
-        while end == OUT_OF_ROWS and start - item.start_s < LONGEST_S:
-            rows = np.zeros(_BLOCK, TRAIN_ROW)
-            count, end, start = run_journey(movement.tables, state, k, (start, PLAN_STEP_S), voltage, rows)
-            blocks.append(rows[:count])
-        calls = slice(int(train["first_stop"]), int(train["first_stop"] + train["stops"]))
-        yield k, _Alone(np.concatenate(blocks), state.arrived_s[calls].copy(), state.left_s[calls].copy())
+def _tell_given_up(item: PlannedRun, alone: AlonePlan) -> None:
+    at = float(alone.rows["s_m"][-1]) / M_PER_KM
+    log.warning("Train %s is driven flat out: by its plan it comes no further than km %.3f of its route.", item.run.id, at)

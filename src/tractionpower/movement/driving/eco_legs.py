@@ -16,7 +16,9 @@ from tractionpower.kernels.eco import (
     STAGE,
     cost_of,
     follow,
+    keep_to_effort,
     lay_choices,
+    lay_floors,
     lay_slopes,
     sweep,
     tabulate_drive,
@@ -46,14 +48,24 @@ _SLOPE_M = 25.0  # changes of slope nearer to each other share a stage, whose re
 _SAME_M = 1e-6
 _SAME_V = 1e-9
 _SAME_W = 1e-6
+_MEAN_OF = 201
 
 
 @dataclass(frozen=True, eq=False)
 class Supplies:
-    """Voltages and current limits along a route: from each place on (voltage [V], current [A]); 0 V: no power."""
+    """What feeds a train along a route.
+
+    Attributes
+    ----------
+    from_m, lines
+        From each place on [m]: voltage [V], 0 without power, and current limit [A].
+    voltage
+        The voltage as given, for what is fed back: rows (distance of the front [m], voltage [V]).
+    """
 
     from_m: Floats
     lines: tuple[tuple[float, float], ...]
+    voltage: Floats
 
 
 def supplies_of(movement: Movement, k: int, voltage: Floats) -> Supplies:
@@ -66,9 +78,10 @@ def supplies_of(movement: Movement, k: int, voltage: Floats) -> Supplies:
     places = places[(places >= 0.0) & (places < train["route_m"])]
     ends = np.append(places[1:], train["route_m"])
     u = np.interp(0.5 * (places + ends), voltage[:, 0], voltage[:, 1])
-    low, high = float(u.min()), float(u.max())
-    if high - low > _SAME_V:
-        u = low + np.round((u - low) / (high - low) * (VOLTAGES - 1)) / (VOLTAGES - 1) * (high - low)
+    fed = u > _SAME_V
+    if fed.any() and np.ptp(u[fed]) > _SAME_V:
+        low, high = float(u[fed].min()), float(u[fed].max())
+        u = np.where(fed, low + np.round((u - low) / (high - low) * (VOLTAGES - 1)) / (VOLTAGES - 1) * (high - low), u)
     amps = np.full(len(places), NO_LIMIT)
     if len(limits):
         amps = limits["max_a"][np.searchsorted(limits["from_m"], places, side="right").clip(1) - 1]
@@ -76,19 +89,22 @@ def supplies_of(movement: Movement, k: int, voltage: Floats) -> Supplies:
         u = np.where(offs["y"][np.searchsorted(offs["x"], places, side="right").clip(1) - 1] == POWERED, u, 0.0)
     lines = list(zip(u.tolist(), amps.tolist(), strict=True))
     first = [n for n in range(len(lines)) if n == 0 or lines[n] != lines[n - 1]]
-    return Supplies(places[first], tuple(lines[n] for n in first))
+    return Supplies(places[first], tuple(lines[n] for n in first), voltage)
 
 
 def eco_record(train: np.void, voltage: Floats, returned: float, slowest_mps: float) -> NDArray[np.void]:
-    """Return one record of `ECO`: `returned` is the share of what is fed back that counts; the mean voltage folds it back."""
-    u = float(np.mean(voltage[:, 1]))
+    """Return one record of `ECO`: `returned` is the share of what is taken from the brake that counts.
+
+    Heating is that at the mean of the voltage over the route.
+    """
+    at = np.linspace(0.0, float(train["route_m"]), _MEAN_OF)
+    u = float(np.sqrt(np.mean(np.interp(at, voltage[:, 0], voltage[:, 1]) ** 2)))
     eco = np.zeros(1, ECO)
     for name in ("inertia_kg", "a_n", "b_ns_per_m", "c_ns2_per_m2"):
         eco[name] = train[name]
     eco["own_w"] = train["auxiliary_w"] + train["heating_s"] * u * u
     eco["gain"] = train["brake_efficiency"] if train["regenerates"] else 0.0
-    fold = (float(train["fold_to_v"]) - u) / max(float(train["fold_to_v"] - train["fold_from_v"]), _SAME_V)
-    eco["back"] = returned * min(max(fold, 0.0), 1.0)
+    eco["back"] = returned
     eco["slow_w"], eco["dv"], eco["level_v"] = slowest_mps**2, ROW_MPS, LEVEL_MPS
     return eco
 
@@ -101,10 +117,20 @@ def drive_table(movement: Movement, k: int, lines: tuple[float, float]) -> Float
     return drive
 
 
+def taken_share(train: np.void, u: Floats) -> Floats:
+    """Return which share of what a brake feeds back is taken at voltages [V]: its current folds back."""
+    width = max(float(train["fold_to_v"] - train["fold_from_v"]), _SAME_V)
+    return np.asarray(np.clip((float(train["fold_to_v"]) - u) / width, 0.0, 1.0))
+
+
 def _voltage_marks(voltage: Floats) -> Floats:
+    """Return places between which a voltage is taken as its mean: regular ones, and the ends of its steep stretches [m]."""
     if len(voltage) == 1:
         return np.zeros(0)
-    return np.arange(voltage[0, 0], voltage[-1, 0], 4.0 * LONGEST_M)
+    steep = np.abs(np.diff(voltage[:, 1])) > np.ptp(voltage[:, 1]) / (2.0 * VOLTAGES)
+    short = np.diff(voltage[:, 0]) < 4.0 * LONGEST_M
+    ends = np.append(steep & short, False) | np.append(False, steep & short)
+    return np.concatenate((np.arange(voltage[0, 0], voltage[-1, 0], 4.0 * LONGEST_M), voltage[ends, 0]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,6 +188,7 @@ class LegModel:
         if np.isfinite(prices).all():
             if self._choices is None:
                 self._choices = np.zeros((count, levels, CONTROLS, 3))
+                lay_floors(self.stages, self.ceilings, self.drives, self.eco)
                 lay_choices(self.stages, self.ceilings, self.drives, self.eco, self._choices)
             value = np.zeros((count + 1, MODES, levels))
             sweep(self.stages, self.ceilings, self.eco, self._choices, prices, SWITCH_S, value)
@@ -169,6 +196,11 @@ class LegModel:
         squares[0] = min(self.start_w, self.ceilings[0])
         follow(self.stages, self.ceilings, self.drives, self.eco, prices, value, SWITCH_S, squares)
         return Way(squares, self.times(squares))
+
+    def within_effort(self, squares: Floats) -> Floats:
+        """Return squares of the speed, lowered to what the greatest effort comes to [m2/s2]."""
+        keep_to_effort(self.stages, self.drives, self.eco, squares)
+        return squares
 
     def times(self, squares: Floats) -> Floats:
         """Return the time of each stage [s] for squares of the speed at their ends."""
@@ -207,6 +239,7 @@ def cut_stages(
     middles = 0.5 * (places[1:] + places[:-1])
     stages["drive"] = np.searchsorted(supplies.from_m, middles, side="right") - 1
     stages["part"] = np.searchsorted(np.array(marks, float), middles, side="right")
+    stages["back"] = taken_share(train, np.interp(middles, supplies.voltage[:, 0], supplies.voltage[:, 1]))
     lay_slopes(tables, k, np.zeros(1, MOVER), stages)
     return stages, *_ceilings(pieces, places)
 

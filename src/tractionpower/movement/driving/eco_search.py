@@ -5,6 +5,9 @@ from a fixed ladder, on which ways are kept for other times of the same leg, and
 w = (1 - x) w_fast + x w_slow, until the time is met exactly. Force and resistance are nearly linear in w, and what a force
 costs is convex in it for a drive of constant efficiency, so a mixed way needs no more energy than the two in proportion:
 mixing is as good as the straight line between two points of the curve of least energy over time.
+
+Below a price of nothing the ladder goes on: time is paid for, and the train brakes and runs slowly to lose it. That is how it
+passes a place on time. Before a stop, where it may as well wait, it does so for next to nothing only.
 """
 
 from __future__ import annotations
@@ -20,13 +23,18 @@ from tractionpower.movement.driving.eco_legs import Floats, LegModel
 STEP = 1.2
 """Ratio of neighbouring prices of the ladder."""
 
-LOWEST, HIGHEST = -60, 40
-"""Ends of the ladder around 1 kW for each tonne: below the lowest time is free, above the highest is the greatest effort."""
+FREE, HIGHEST = -40, 40
+"""Steps of the ladder around 1 kW for each tonne: at the one time is free, above the other is the greatest effort."""
 
-_ROUNDS = 3  # of parts of a group that share a leg
+WAITING, LOWEST = FREE - 15, FREE - 65
+"""Lowest steps, where time is paid for: 0.01 kW for each tonne before a stop, more than any train pays before a pass."""
+
+_ROUNDS = 6  # of parts of a group that share a leg
+_CARRIES = 3  # how often what parts miss is handed on
 _MIXES = 60  # halvings
 _BLEND_M = 400.0
 _SAME_S = 1e-3
+_KEPT_S = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,10 +45,29 @@ class GroupLeg:
     first: int
 
 
-def ways_in_time(legs: Sequence[GroupLeg], targets_s: Sequence[float]) -> list[Floats] | None:
-    """Return squares of the speed for each leg so that each part of the group takes its time, with the least energy.
+@dataclass(frozen=True, eq=False)
+class InTime:
+    """How a group keeps its times.
 
-    Parts that cannot be so slow or so fast are as slow or fast as they can. None: no part has time to spare.
+    Attributes
+    ----------
+    ways
+        Squares of the speed for each leg [m2/s2]; None: no part has time to spare.
+    times_s
+        The running time of each part [s].
+    late_s
+        By how much it is late at its end, because it cannot be faster [s].
+    """
+
+    ways: list[Floats] | None
+    times_s: Floats
+    late_s: float
+
+
+def ways_in_time(legs: Sequence[GroupLeg], targets_s: Sequence[float], waits: bool = True) -> InTime:
+    """Return how each part of a group takes its time, with the least energy.
+
+    Parts that cannot be so slow or so fast are as slow or fast as they can; the next ones make up for it.
 
     Parameters
     ----------
@@ -48,22 +75,37 @@ def ways_in_time(legs: Sequence[GroupLeg], targets_s: Sequence[float]) -> list[F
         The legs of the group.
     targets_s
         Running time of each part [s]; NaN: as much more than the shortest as in the part before.
+    waits
+        Whether the train waits at the end of the last part if it is early.
     """
-    group = _Group(legs, len(targets_s))
-    targets, shortest = np.array(targets_s, float), group.times([HIGHEST] * len(targets_s))
-    for part in np.flatnonzero(np.isnan(targets)).tolist():
-        targets[part] = shortest[part] * targets[part - 1] / shortest[part - 1]
-    lateness(shortest, targets)
-    if (shortest > targets - _SAME_S).all():
-        return None
-    steps = [0] * len(targets)
+    group, parts = _Group(legs, len(targets_s)), len(targets_s)
+    wanted, shortest = np.array(targets_s, float), group.times([HIGHEST] * parts)
+    for part in np.flatnonzero(np.isnan(wanted)).tolist():
+        wanted[part] = shortest[part] * wanted[part - 1] / shortest[part - 1]
+    late = lateness(shortest, wanted)
+    if (shortest > wanted - _SAME_S).all():
+        return InTime(None, shortest, late)
+    lowest = [LOWEST] * (parts - 1) + [WAITING if waits else LOWEST]
+    steps, targets = [0] * parts, wanted.copy()
+    for _ in range(1 if parts == 1 else _CARRIES):
+        _settle(group, steps, targets, lowest)
+        ways = _mixed(group, steps, targets)
+        times = group.times_of(ways)
+        missed = np.cumsum(times - wanted)
+        before, targets = targets, wanted - np.append(0.0, missed[:-1])
+        if np.abs(targets - before).max() < _KEPT_S:
+            break
+    return InTime(ways, times, late)
+
+
+def _settle(group: _Group, steps: list[int], targets: Floats, lowest: Sequence[int]) -> None:
+    """Move `steps` to where each part takes at least its time, those of the others given, and is not slower than needed."""
     for _ in range(1 if len(targets) == 1 else _ROUNDS):
         before = list(steps)
         for part in range(len(targets)):
-            steps[part] = _bisect(group, steps, part, targets[part])
+            steps[part] = _bisect(group, steps, part, (float(targets[part]), lowest[part]))
         if steps == before:
             break
-    return _mixed(group, steps, targets)
 
 
 def lateness(shortest: Floats, targets: Floats) -> float:
@@ -79,18 +121,17 @@ def lateness(shortest: Floats, targets: Floats) -> float:
     return late
 
 
-def shortest_times(legs: Sequence[GroupLeg], parts: int) -> Floats:
-    """Return the shortest running time of each part of a group [s]."""
-    return _Group(legs, parts).times([HIGHEST] * parts)
+def _bisect(group: _Group, steps: list[int], part: int, goal: tuple[float, int]) -> int:
+    """Return the greatest step of the ladder of a part at which it takes at least its time; its lowest one if none does.
 
-
-def _bisect(group: _Group, steps: list[int], part: int, target_s: float) -> int:
-    """Return the greatest step of the ladder of a part at which it takes at least its time; `LOWEST` if none does."""
+    `goal` holds that time [s] and the lowest step.
+    """
+    target_s, lowest = goal
 
     def is_slow(step: int) -> bool:
         return bool(group.times([*steps[:part], step, *steps[part + 1 :]])[part] >= target_s)
 
-    low, high, width = LOWEST, HIGHEST, 4
+    low, high, width = lowest, HIGHEST, 2
     guess = steps[part]
     if is_slow(guess):  # widen from the last one
         low = guess
@@ -117,8 +158,11 @@ def _mixed(group: _Group, steps: list[int], targets: Floats) -> list[Floats]:
     fast = group.squares([min(step + 1, HIGHEST) for step in steps])
     shares = np.ones(len(targets))
     for _ in range(1 if len(targets) == 1 else _ROUNDS):
+        before = shares.copy()
         for part in range(len(targets)):
             shares[part] = _share(group, (slow, fast), shares, part, targets[part])
+        if np.abs(shares - before).max() < _SAME_S:
+            break
     return group.mix(slow, fast, shares)
 
 
@@ -173,7 +217,7 @@ class _Group:
         if self._parts == 1:
             return [f + float(shares[0]) * (s - f) for s, f in zip(slow, fast, strict=True)]
         return [
-            f + self._blend(item.leg.stages, part, shares) * (s - f)
+            item.leg.within_effort(f + self._blend(item.leg.stages, part, shares) * (s - f))
             for item, part, s, f in zip(self._legs, self._in_part, slow, fast, strict=True)
         ]
 
@@ -196,7 +240,9 @@ class _Group:
         return tuple(self._price(steps[item.first + n]) for n in range(count))
 
     def _price(self, step: int) -> float:
-        return self._unit_w * STEP**step if step > LOWEST else 0.0
+        if step == FREE:
+            return 0.0
+        return self._unit_w * (STEP**step if step > FREE else -(STEP ** (2 * FREE - step)))
 
     def _sums(self, times: Sequence[Floats]) -> Floats:
         found = np.zeros(self._parts)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tractionpower.model.driving import Eco, Reserve
 from tractionpower.movement.compile import AT_START_M, PlannedCall, PlannedRun
@@ -22,11 +22,25 @@ class Group:
         given.
     spare_s
         Time in hand at the stop where it ends [s]: what the planned dwell is longer than the shortest.
+    waits
+        Whether a train that comes to its end early waits there; else it has to be slow enough.
     """
 
     places_m: tuple[float, ...]
     parts: tuple[tuple[float, float], ...]
     spare_s: float = 0.0
+    waits: bool = True
+
+
+def corrected(groups: Sequence[Group], late_s: Sequence[float]) -> list[Group]:
+    """Return groups whose parts are to take less time: `late_s` says how much, in the order of all parts [s]."""
+    found, at = [], 0
+    for group in groups:
+        less = late_s[at : at + len(group.parts)]
+        parts = tuple((end, round(seconds - late, 3)) for (end, seconds), late in zip(group.parts, less, strict=True))
+        found.append(replace(group, parts=parts))
+        at += len(group.parts)
+    return found
 
 
 def leg_places(item: PlannedRun) -> tuple[float, ...]:
@@ -73,11 +87,11 @@ def timed_groups(item: PlannedRun) -> list[Group]:
         places, parts = [at], []
     if parts:  # the last timed call is passed: the rest of its leg has no time to meet
         end = next((place for place in leg_places(item) if place >= parts[-1][0] - AT_START_M), item.route_m)
-        if places[-1] < end:
-            places.append(end)
-        if end > parts[-1][0] + AT_START_M:
+        places = [place for place in places if place < end] + [end]  # not the stops behind that
+        is_rest = end > parts[-1][0] + AT_START_M
+        if is_rest:
             parts.append((end, float("nan")))
-        groups.append(Group(tuple(places), tuple(parts)))
+        groups.append(Group(tuple(places), tuple(parts), waits=is_rest))
     return [group for group in groups if len(group.places_m) > 1]
 
 

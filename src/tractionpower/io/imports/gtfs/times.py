@@ -10,9 +10,8 @@ from tractionpower.io.imports.gtfs.options import GtfsOptions
 from tractionpower.io.imports.gtfs.trips import StopTime, Trip, listed
 from tractionpower.io.imports.imported import Notes
 from tractionpower.io.wording import printable
-from tractionpower.model.base import format_time
+from tractionpower.model.base import DAY_S, format_time
 
-DAY_S = 86_400.0
 _LATEST_START_S = 36 * 3600.0
 """A trip that starts after noon of the day after its service day is doubted."""
 

@@ -15,9 +15,8 @@ from tractionpower.io.imports.tables.headings import plain_words
 from tractionpower.io.imports.tables.station_names import listed
 from tractionpower.io.imports.tables.ways import Ways
 from tractionpower.io.wording import did_you_mean, shown
-from tractionpower.model.base import format_time
+from tractionpower.model.base import DAY_S, format_time
 
-DAY_S = 86400.0
 OVER_MIDNIGHT_S = 43200.0
 """A time that falls by more than this is one of the next day; by less it is an error [s]."""
 
