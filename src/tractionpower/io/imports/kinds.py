@@ -28,12 +28,15 @@ class Kind:
         Its options by their names on the command line.
     adds
         Whether it adds to a folder that holds a study, and is told which.
+    folder
+        Name of the argument by which another one is told the folder of the study, for its rolling stock.
     """
 
     module: str
     function: str
     options: Mapping[str, Option]
     adds: bool = False
+    folder: str | None = None
 
 
 def _listed(text: str) -> tuple[str, ...]:
@@ -60,6 +63,7 @@ KINDS: Mapping[str, Kind] = {
             "stop-tolerance": ("stop_tolerance_m", float),
             "name": ("name", str),
         },
+        folder="folder",
     ),
     "timetable": Kind(
         "tables.reading",
@@ -103,7 +107,7 @@ def read_source(kind: str, source: Path, folder: Path, options: Mapping[str, Any
     if not source.exists():
         raise UsageError(f"there is no file or folder {printable(str(source))}")
     found = KINDS[kind]
-    given: dict[str, Any] = {}
+    given: dict[str, Any] = {} if found.folder is None else {found.folder: folder}
     for name, value in options.items():
         if value is None or value is False:
             continue

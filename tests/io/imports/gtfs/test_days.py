@@ -3,6 +3,8 @@
 import pytest
 from small_feeds import codes, read, tables, trains
 
+from tractionpower.errors import UsageError
+
 ONLY_DATES = [
     {"service_id": "S", "date": "20230610", "exception_type": "1"},
     {"service_id": "D", "date": "20230609", "exception_type": "1"},
@@ -29,9 +31,6 @@ def test_days(tmp_path, options, expected):
         ({"date": "20230608"}, "no_trips"),  # a Thursday taken out by calendar_dates.txt
         ({"date": "20230611"}, "no_trips"),  # a Sunday
         ({"date": "20240607"}, "no_trips"),  # outside
-        ({"date": "7 June"}, "bad_date"),
-        ({"date": "20230607", "day": "thu"}, "bad_date"),
-        ({"day": "noday"}, "bad_day"),
         ({"day": "sun"}, "no_trips"),
     ],
 )
@@ -39,6 +38,22 @@ def test_days_without_trips_and_bad_ones(tmp_path, options, code):
     found = read(tmp_path, options)
     assert codes(found) == [code]
     assert found.texts == {}
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"date": "7 June"}, "--date 7 June: give YYYYMMDD or YYYY-MM-DD"),
+        ({"date": "2023-06-31"}, "--date 2023-06-31: there is no such day"),
+        ({"date": "20230229"}, "there is no such day"),
+        ({"date": "20230607", "day": "thu"}, "2023-06-07 is a wednesday"),
+        ({"day": "noday"}, "--day noday"),
+        ({"date": "20230607", "day": "noday"}, "--day noday"),
+    ],
+)
+def test_days_that_are_none_are_wrong_usage(tmp_path, options, words):
+    with pytest.raises(UsageError, match=words):
+        read(tmp_path, options)
 
 
 def test_an_exception_adds_a_service(tmp_path):

@@ -78,3 +78,41 @@ def test_a_stop_without_a_place(tmp_path, lost):
     placed = read(tmp_path, {"stops": table(tmp_path, "stop_id,km\nB,1.3\n")}, stops=stops)
     assert kms(placed)["B"] == 1.3
     assert placed.notes.repaired == []
+
+
+@pytest.mark.parametrize("options", [{"repair": True}, {"stop_tolerance_m": 20_000.0}])
+def test_a_stop_off_the_shape_leaves_its_neighbours_where_they_are(tmp_path, options):
+    # C lies far to the north, above D: the shape's nearest place to it is not between B and D
+    stops = [stop("A", 0), stop("B", 1), stop("C", 4, 0.05), stop("D", 3)]
+    found = read(tmp_path, stops=stops)
+    (problem,) = found.notes.problems
+    assert (problem.code, problem.place) == ("stop_off_shape", "stops.txt:4")
+    assert "stop C (Stop C) lies" in problem.found
+    assert "between B and D" in problem.found
+    mended = read(tmp_path, options, stops=stops)
+    sound = kms(read(tmp_path / "sound"))
+    assert kms(mended) == {**sound, "C": pytest.approx(2 * KM, abs=2e-3)}  # halfway
+    (told,) = [row for row in mended.notes.repaired + mended.notes.assumed if "stop C (Stop C)" in row]
+    assert "halfway" in told
+
+
+def test_several_stops_off_the_shape_lie_evenly_between_those_on_it(tmp_path):
+    stops = [stop("A", 0), stop("B", 5, 0.05), stop("C", 5, 0.06), stop("D", 3)]
+    found = read(tmp_path, stops=stops)
+    assert [problem.place for problem in found.notes.problems] == ["stops.txt:3", "stops.txt:4"]
+    assert kms(read(tmp_path, {"repair": True}, stops=stops)) == pytest.approx(kms(read(tmp_path / "sound")), abs=2e-3)
+
+
+def test_a_tolerance_beyond_the_usual_tells_each_stop(tmp_path):
+    found = read(tmp_path, {"stop_tolerance_m": 2500.0}, stops=OFF)
+    (told,) = [row for row in found.notes.assumed if "stop B" in row]
+    assert "lies 2225 m" in told
+    assert "within the tolerance of 2500 m" in told
+
+
+def test_the_row_of_the_table_that_mixes_up_the_order_is_named(tmp_path):
+    file = table(tmp_path, "stop_id,km\nA,0\nB,3.5\nD,4.302\n")
+    (problem,) = read(tmp_path, {"stops": file}, stops=OFF).notes.problems
+    assert problem.place == "stops.csv:3"
+    assert "stop B at km 3.5" in problem.found
+    assert "A (km 0) and C (km 2.868)" in problem.found

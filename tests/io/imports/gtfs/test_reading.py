@@ -1,5 +1,6 @@
 """A feed becomes a study that reads and checks: every rail trip of the day once, all that was assumed told."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -60,6 +61,34 @@ def test_all_is_told(tmp_path):
     ):
         assert words in told, words
     assert all(row in told for rows in (found.notes.read, found.notes.assumed, found.notes.ignored) for row in rows)
+
+
+def test_a_train_that_nobody_knows(tmp_path):
+    found = read(tmp_path, {"train": "en99"})
+    (problem,) = found.notes.problems
+    assert (problem.code, problem.remedy, found.texts) == ("unknown_train", "did you mean en97?", {})
+    own = tmp_path / "study" / "rollingstock" / "trains"
+    own.mkdir(parents=True)
+    (own / "en99.yaml").write_text("format: 1\n", encoding="utf-8")
+    assert trains(read(tmp_path, {"train": "en99", "folder": tmp_path / "study"}))["T1"]["train"] == "en99"
+
+
+def test_whole_minutes_set_the_tolerance(tmp_path):
+    assert plain(read(tmp_path), "study.yaml")["feasibility"] == {"tolerance_s": 30.0}
+    seconds = read(tmp_path, **with_trip("T3", "A 10:00:00", "B 10:02:17", "D 10:07:00"))
+    assert "feasibility" not in plain(seconds, "study.yaml")
+
+
+def test_trips_that_are_too_fast_are_told(tmp_path):
+    assert not any("may be faster" in row for row in read(tmp_path).notes.assumed)
+    found = read(tmp_path, **with_trip("T3", "A 10:00:00", "B 10:01:00", "C 10:02:00", "D 10:09:00"))
+    (told,) = [row for row in found.notes.assumed if "may be faster" in row]
+    # at 0.5 m/s2, with 20 s at B and at C, where it leaves 120 s after A by the plan
+    late = 2 * (2 * math.sqrt(1000.0 * KM / 0.5) + 20.0) - 120.0
+    assert "1 of 3 trips" in told
+    assert f"T3 would be {late:.0f} s late" in told
+    assert f"{KM * 60:.0f} km/h on average" in told
+    assert any("may be faster" in row for row in read(tmp_path, {"speed_kmh": 45.0}).notes.assumed)
 
 
 def test_times_to_the_second_are_not_called_rounded(tmp_path):

@@ -34,6 +34,24 @@ def test_one_time_a_day_too_late(tmp_path):
     assert any("41:06:00 is a day late" in row for row in mended.notes.repaired)
 
 
+def test_one_time_that_is_wrong_on_either_day_is_left_out(tmp_path):
+    changed = with_trip("N1", "A 17:02:00", "B 41:00:00", "C 17:10:00", "D 17:12:00")
+    assert codes(read(tmp_path, **changed)) == ["implausible_time"]
+    mended = read(tmp_path, {"repair": True}, **changed)
+    assert times(mended, "N1") == [(None, "17:02:00"), (None, "17:06:00"), (None, "17:10:00"), ("17:12:00", None)]
+    assert [row for row in mended.notes.repaired if "midnight" in row] == []
+    assert any("41:00:00 is neither between 17:02:00 and 17:10:00" in row for row in mended.notes.repaired)
+    assert "tolerance_s: 30" in mended.texts["study.yaml"]  # the time that was filled in is no time of the feed
+
+
+def test_repairs_that_did_not_help_are_not_told(tmp_path):
+    changed = with_trip("N1", "A 23:50:00", "B 00:02:00", "C 00:04:00", "D 00:03:00")
+    found = read(tmp_path, {"repair": True}, **changed)
+    assert codes(found) == ["times_backwards"]
+    assert found.notes.repaired == []
+    assert "00:02:00 at B" in found.notes.problems[0].found  # as the feed has it
+
+
 def test_the_last_time_a_day_too_late(tmp_path):
     changed = with_trip("N1", "A 17:02:00", "B 17:04:00", "D 41:06:00")
     assert codes(read(tmp_path, **changed)) == ["implausible_time"]

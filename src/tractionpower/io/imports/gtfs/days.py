@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from datetime import date, datetime, timedelta
 
 import pandas as pd
 
-from tractionpower.errors import Problem
+from tractionpower.errors import Problem, UsageError
 from tractionpower.io.imports.gtfs.feed import WEEKDAYS, Feed, rows_of
 from tractionpower.io.imports.gtfs.options import GtfsOptions
 from tractionpower.io.imports.imported import Notes
-from tractionpower.io.wording import shown
+from tractionpower.io.wording import printable
 
 _LONGEST_DAYS = 3660
 _NAMES = tuple(name[:3] for name in WEEKDAYS)
@@ -21,8 +22,8 @@ def services_of_the_day(feed: Feed, trips: pd.DataFrame, options: GtfsOptions, n
     if not (feed.has("calendar") or feed.has("calendar_dates")):
         return _without_calendar(trips, options, notes)
     calendar = _Calendar(feed, notes)
-    wanted = _wanted(options, notes)
-    if wanted is None or not calendar.days:
+    wanted = _wanted(options)
+    if not calendar.days:
         return set()
     if isinstance(wanted, date):
         services = calendar.services(wanted)
@@ -59,21 +60,32 @@ def _choose(calendar: _Calendar, trips: pd.DataFrame, weekday: int, options: Gtf
     return services
 
 
-def _wanted(options: GtfsOptions, notes: Notes) -> date | int | None:
+def check_day(options: GtfsOptions) -> None:
+    """Refuse a date or a day of the week that is none.
+
+    Raises
+    ------
+    UsageError
+        If there is no such day.
+    """
+    _wanted(options)
+
+
+def _wanted(options: GtfsOptions) -> date | int:
     """Return the date asked for, or the number of the day of the week."""
-    if options.date is not None:
-        parsed = _date(options.date.replace("-", ""))
-        if parsed is None:
-            notes.problems.append(Problem("bad_date", "", f"the date {shown(options.date)}", "YYYYMMDD or YYYY-MM-DD"))
-        elif options.day is not None and _NAMES[parsed.weekday()] != options.day[:3].lower():
-            found = f"{parsed} is a {WEEKDAYS[parsed.weekday()]}, asked for is also {shown(options.day)}"
-            notes.problems.append(Problem("bad_date", "", found, remedy="leave out the date or the day"))
-        return parsed
-    name = (options.day or "wed")[:3].lower()
-    if name not in _NAMES:
-        notes.problems.append(Problem("bad_day", "", f"the day {shown(options.day)}", ", ".join(_NAMES)))
-        return None
-    return _NAMES.index(name)
+    name = None if options.day is None else options.day[:3].lower()
+    if name is not None and name not in _NAMES:
+        raise UsageError(f"--day {printable(options.day or '')}: no day of the week; allowed: {', '.join(_NAMES)}")
+    if options.date is None:
+        return _NAMES.index(name or "wed")
+    parsed = _date(options.date.replace("-", ""))
+    if parsed is None:
+        text = printable(options.date)
+        is_written_well = re.fullmatch(r"\d{4}-?\d\d-?\d\d", options.date) is not None
+        raise UsageError(f"--date {text}: " + ("there is no such day" if is_written_well else "give YYYYMMDD or YYYY-MM-DD"))
+    if name is not None and _NAMES[parsed.weekday()] != name:
+        raise UsageError(f"--day {name}: {parsed} is a {WEEKDAYS[parsed.weekday()]}; leave out --date or --day")
+    return parsed
 
 
 def _without_calendar(trips: pd.DataFrame, options: GtfsOptions, notes: Notes) -> set[str]:

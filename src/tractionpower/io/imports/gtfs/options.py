@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from tractionpower.io.imports.gtfs.shapes import OFF_SHAPE_M
+
 HELP = {
     "date": "Day whose trips are read, YYYYMMDD or YYYY-MM-DD; left out: the first Wednesday with most trips.",
     "day": "Day of the week in place of Wednesday: mon, tue, wed, thu, fri, sat, sun.",
@@ -17,6 +19,7 @@ HELP = {
     "speed_kmh": "Speed limit of the whole line [km/h].",
     "double": "Stretches of double track as FROM..TO by stop_id, or `all`, or `none`; each track has one direction.",
     "stop_tolerance_m": "Distance of a stop from its shape from which on it is off the shape [m].",
+    "folder": "Folder of the study, whose own rolling stock counts first.",
     "name": "Name of the line; left out: that of the agency.",
 }
 """What each field of `GtfsOptions` means."""
@@ -36,5 +39,6 @@ class GtfsOptions:
     min_dwell_s: float = 20.0
     speed_kmh: float = 120.0
     double: tuple[str, ...] = ("all",)
-    stop_tolerance_m: float = 150.0
+    stop_tolerance_m: float = OFF_SHAPE_M
     name: str = ""
+    folder: Path | None = None

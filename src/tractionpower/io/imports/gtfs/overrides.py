@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,10 +20,11 @@ from tractionpower.io.wording import did_you_mean, printable, shown
 
 @dataclass(frozen=True, slots=True)
 class Override:
-    """Where a stop lies; `track` is the number of the line, from 1, where it is given."""
+    """Where a stop lies: kilometre, number of the line from 0 where it is given, file and line that say so."""
 
     km: float
     axis: int | None
+    place: str
 
 
 def read_overrides(file: Path | None, known: set[str], notes: Notes) -> dict[str, Override]:
@@ -56,7 +58,7 @@ def read_overrides(file: Path | None, known: set[str], notes: Notes) -> dict[str
         elif stop in overrides:
             notes.problems.append(Problem("doubled_stop", "", f"the stop {shown(stop)} twice", "each once", place=where))
         else:
-            overrides[stop] = Override(km, int(axis) - 1 if axis else None)
+            overrides[stop] = Override(km, int(axis) - 1 if axis else None, where)
     return overrides
 
 
@@ -77,7 +79,7 @@ def apply_overrides(overrides: dict[str, Override], stops: Stops, network: Netwo
         if axis >= len(network.axes):
             found = f"stop {printable(name)} is to be on track {axis + 1}"
             allowed = f"lines 1 to {len(network.axes)}"
-            notes.problems.append(Problem("bad_place", "", found, allowed, place="table of stops"))
+            notes.problems.append(Problem("bad_place", "", found, allowed, place=override.place))
             continue
         network.stations[station] = Place(axis, round(override.km, 3))
     for number, axis_ in enumerate(network.axes):
@@ -86,6 +88,46 @@ def apply_overrides(overrides: dict[str, Override], stops: Stops, network: Netwo
         notes.read.append(f"{len(used)} stops at the kilometres of the table of stops")
     if len(used) < len(overrides):
         notes.ignored.append(f"{len(overrides) - len(used)} rows of the table of stops, where no train of the day stops")
+
+
+def check_order(
+    overrides: dict[str, Override],
+    stops: Stops,
+    network: Network,
+    before: dict[str, Place],
+    ways: Sequence[tuple[Sequence[str], int]],
+    notes: Notes,
+) -> None:
+    """Tell rows of the table of stops that put a station where trains would have to turn round.
+
+    `before` are the places without the table, `ways` the stations of trains and how often they turned round there.
+    """
+    blamed: set[str] = set()
+    for stations, turns in ways:
+        if network.turns(stations) <= turns:
+            continue
+        mine = {name: each for name, each in overrides.items() if stops.station.get(name) in stations}
+        # the row whose station trains would turn at fewest without it
+        without = {name: _turns_without(stops.station[name], stations, network, before) for name in mine}
+        culprits = [name for name in mine if without[name] == min(without.values())] if min(without.values()) <= turns else mine
+        for name in culprits:
+            if name in blamed:
+                continue
+            blamed.add(name)
+            k = list(stations).index(stops.station[name])
+            beside = [other for other in (*stations[max(k - 1, 0) : k], *stations[k + 1 : k + 2])]
+            told = " and ".join(f"{printable(other)} (km {network.stations[other].km:g})" for other in beside)
+            found = f"stop {printable(name)} at km {mine[name].km:g}, out of the order in which trains come to it, beside {told}"
+            notes.problems.append(Problem("order_of_stops", "", found, remedy="correct its km", place=mine[name].place))
+
+
+def _turns_without(station: str, stations: Sequence[str], network: Network, before: dict[str, Place]) -> int:
+    """Return how often trains turn round if a station is where it was without the table."""
+    moved = network.stations[station]
+    network.stations[station] = before[station]
+    turns = network.turns(stations)
+    network.stations[station] = moved
+    return turns
 
 
 def _fit(axis: Axis, number: int, network: Network, moved: set[str]) -> None:

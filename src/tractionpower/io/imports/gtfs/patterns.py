@@ -12,9 +12,9 @@ import numpy as np
 import pandas as pd
 
 from tractionpower.errors import Problem
-from tractionpower.io.imports.gtfs.feed import Feed, first_line
+from tractionpower.io.imports.gtfs.feed import Feed, first_line, rows_of
 from tractionpower.io.imports.gtfs.options import GtfsOptions
-from tractionpower.io.imports.gtfs.shapes import Floats, Polyline, distance_m, place_in_order
+from tractionpower.io.imports.gtfs.shapes import OFF_SHAPE_M, Floats, Polyline, distance_m, place_in_order
 from tractionpower.io.imports.gtfs.trips import Trip, listed
 from tractionpower.io.imports.imported import Notes
 from tractionpower.io.wording import printable
@@ -58,16 +58,23 @@ class Pattern:
 
 @dataclass(frozen=True, slots=True)
 class Stops:
-    """Stops of the feed: places [degrees], names, and the station that each belongs to."""
+    """Stops of the feed: places [degrees], names, the station that each belongs to, and their lines in ``stops.txt``."""
 
     places: dict[str, tuple[float, float]]
     names: dict[str, str]
     station: dict[str, str]
+    lines: dict[str, int]
+
+    def at(self, name: str) -> str:
+        """Return where a stop stands in the feed."""
+        return f"stops.txt:{self.lines[name]}" if name in self.lines else "stops.txt"
 
 
 def read_stops(feed: Feed, used: set[str], notes: Notes) -> Stops:
     """Return the stops that trips use; platforms of one station become one, by parent_station or by name and place."""
-    rows = feed.table("stops").drop_duplicates("stop_id").set_index("stop_id")
+    rows = feed.table("stops").drop_duplicates("stop_id")
+    lines = {row["stop_id"]: line for line, row in rows_of(rows)}
+    rows = rows.set_index("stop_id")
     lat, lon = (pd.to_numeric(rows[name], errors="coerce") for name in ("stop_lat", "stop_lon"))
     good = lat.between(-90.0, 90.0) & lon.between(-180.0, 180.0) & ~((lat == 0.0) & (lon == 0.0))
     places = {str(name): (float(lat[name]), float(lon[name])) for name in rows.index[good]}
@@ -79,7 +86,7 @@ def read_stops(feed: Feed, used: set[str], notes: Notes) -> Stops:
     merged = _merge_by_name(station, places, names)
     if merged:
         notes.assumed.append(f"stops with one name within {_SAME_STATION_M:g} m are one station: {listed(sorted(merged))}")
-    return Stops(places, names, station)
+    return Stops(places, names, station, lines)
 
 
 def _merge_by_name(station: dict[str, str], places: dict[str, tuple[float, float]], names: dict[str, str]) -> set[str]:
@@ -134,7 +141,8 @@ def find_patterns(feed: Feed, trips: Sequence[Trip], stops: Stops, options: Gtfs
             continue
         along, away = place_in_order(line, points[:, 0], points[:, 1])
         back_along, back_away = place_in_order(line.reversed(), points[:, 0], points[:, 1])
-        if np.sum(back_away**2) < 0.25 * np.sum(away**2) and away.max() > options.stop_tolerance_m:
+        worse, better = (float(np.sum(np.minimum(each, OFF_SHAPE_M) ** 2)) for each in (away, back_away))
+        if better < 0.25 * worse and away.max() > min(options.stop_tolerance_m, OFF_SHAPE_M):
             notes.assumed.append(f"shape {printable(shape)} runs against its trips and was turned round")
             line, along, away = line.reversed(), back_along, back_away
         stations = tuple(stops.station[stop] for stop in chain)
@@ -157,7 +165,7 @@ def check_places(trips: Sequence[Trip], stops: Stops, fixed: set[str], options: 
                 continue
         found = f"stop {printable(name)} ({stops.names.get(name, '')}) has no coordinates"
         remedy = "give them, or its km in the table of stops; with repair it is put between its neighbours"
-        notes.problems.append(Problem("stop_without_place", "", found, "latitude and longitude", remedy, place="stops.txt"))
+        notes.problems.append(Problem("stop_without_place", "", found, "latitude and longitude", remedy, place=stops.at(name)))
 
 
 def _between(name: str, trips: Sequence[Trip], stops: Stops) -> tuple[float, float] | None:

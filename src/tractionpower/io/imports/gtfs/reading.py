@@ -12,17 +12,21 @@ from typing import Any
 import numpy as np
 
 from tractionpower.errors import Problem
+from tractionpower.io.imports.gtfs.days import check_day
 from tractionpower.io.imports.gtfs.feed import Feed, read_feed
 from tractionpower.io.imports.gtfs.network import Leg, Network, Place
 from tractionpower.io.imports.gtfs.options import GtfsOptions
-from tractionpower.io.imports.gtfs.overrides import Override, apply_overrides, read_overrides
+from tractionpower.io.imports.gtfs.overrides import Override, apply_overrides, check_order, read_overrides
+from tractionpower.io.imports.gtfs.pace import told_pace
 from tractionpower.io.imports.gtfs.patterns import Pattern, Stops, check_places, find_patterns, merge_calls, read_stops
+from tractionpower.io.imports.gtfs.shapes import OFF_SHAPE_M
 from tractionpower.io.imports.gtfs.texts import line_text, readme_text, study_text, supply_text, timetable_text
-from tractionpower.io.imports.gtfs.times import fill_times, mend_times, rounding_s, without_times
+from tractionpower.io.imports.gtfs.times import MINUTE_S, ROUNDED_S, fill_times, mend_times, rounding_s, without_times
 from tractionpower.io.imports.gtfs.tracks import Tracks, lay_tracks
 from tractionpower.io.imports.gtfs.trains import Timed, rotations_of, train_rows
 from tractionpower.io.imports.gtfs.trips import Trip, listed, read_trips
 from tractionpower.io.imports.imported import Imported, Notes
+from tractionpower.io.stock_finder import find_rolling_stock, not_found
 from tractionpower.io.wording import printable
 
 _DIFFERS_M = 300.0
@@ -42,8 +46,14 @@ def read_gtfs(source: str | Path, **options: Any) -> Imported:
     Returns
     -------
     The files of a study, none of them if there are errors; and what was read, assumed, repaired, ignored, with all problems.
+
+    Raises
+    ------
+    UsageError
+        If the date or the day of the week that is asked for is none.
     """
     choices, notes = GtfsOptions(**options), Notes()
+    check_day(choices)
     return Imported(_texts(Path(source), choices, notes) if _are_good(choices, notes) else {}, notes)
 
 
@@ -52,6 +62,8 @@ def _are_good(options: GtfsOptions, notes: Notes) -> bool:
         value = getattr(options, name)
         if not (math.isfinite(value) and value > above):
             notes.problems.append(Problem("bad_option", "", f"{name} is {value:g}", "a number above zero"))
+    if find_rolling_stock("trains", options.train, options.folder) is None:
+        notes.problems.append(not_found("trains", options.train, options.folder, "", "--train"))
     return not notes.problems
 
 
@@ -87,10 +99,9 @@ def _texts(source: Path, options: GtfsOptions, notes: Notes) -> dict[str, str]:
     if _failed(notes):
         return {}
     turns = [network.turns(pattern.stations) for pattern in patterns]
+    before = dict(network.stations)
     apply_overrides(overrides, stops, network, notes)
-    if any(network.turns(pattern.stations) > before for pattern, before in zip(patterns, turns, strict=True)):
-        found = "the table of stops puts stations into another order than that in which trains come to them"
-        notes.problems.append(Problem("order_of_stops", "", found, remedy="correct its kilometres", place="table of stops"))
+    check_order(overrides, stops, network, before, [(each.stations, n) for each, n in zip(patterns, turns, strict=True)], notes)
     tracks = lay_tracks(network, options.double, notes.problems)
     _check_ways(patterns, network, overrides, notes)
     if _failed(notes):
@@ -131,28 +142,35 @@ def _check_distances(
     patterns: Sequence[Pattern], stops: Stops, overrides: dict[str, Override], options: GtfsOptions, notes: Notes
 ) -> None:
     """Tell stops off the shape, each once with its greatest distance."""
+    least = min(options.stop_tolerance_m, OFF_SHAPE_M)
     away: dict[str, tuple[float, str]] = {}
     for pattern in patterns:
-        for stop, distance in zip(pattern.stops, pattern.away_m.tolist(), strict=True):
-            if distance > options.stop_tolerance_m and distance > away.get(stop, (0.0, ""))[0]:
-                away[stop] = distance, pattern.shape
-    for stop, (distance, shape) in sorted(away.items()):
-        found = f"stop {printable(stop)} ({stops.names.get(stop, '')}) lies {distance:.0f} m from shape {printable(shape)}"
+        for k, (stop, distance) in enumerate(zip(pattern.stops, pattern.away_m.tolist(), strict=True)):
+            if distance > least and distance > away.get(stop, (0.0, ""))[0]:
+                neighbours = [printable(other) for other in (*pattern.stops[max(k - 1, 0) : k], *pattern.stops[k + 1 : k + 2])]
+                beside = ("beside " if len(neighbours) == 1 else "between ") + " and ".join(neighbours)
+                away[stop] = distance, f"shape {printable(pattern.shape)} {beside}"
+    for stop, (distance, where) in sorted(away.items()):
+        found = f"stop {printable(stop)} ({stops.names.get(stop, '')}) lies {distance:.0f} m from {where}"
+        put = "at the nearest place there, or halfway between them" if distance > OFF_SHAPE_M else "at the nearest place there"
         if stop in overrides:
             notes.read.append(f"{found}: its place is that of the table of stops")
+        elif distance <= options.stop_tolerance_m:
+            notes.assumed.append(f"{found}, within the tolerance of {options.stop_tolerance_m:g} m: put {put}")
         elif options.repair:
-            notes.repaired.append(f"{found}: put at the nearest place of it")
+            notes.repaired.append(f"{found}: put {put}")
         else:
             allowed = f"at most {options.stop_tolerance_m:g} m"
-            remedy = "give its km in the table of stops; with repair it is put at the nearest place of the shape"
-            notes.problems.append(Problem("stop_off_shape", "", found, allowed, remedy, place="stops.txt"))
+            remedy = f"correct its coordinates, or give its km in the table of stops; with repair it is put {put}"
+            notes.problems.append(Problem("stop_off_shape", "", found, allowed, remedy, place=stops.at(stop)))
 
 
 def _check_ways(patterns: Sequence[Pattern], network: Network, overrides: dict[str, Override], notes: Notes) -> None:
     """Tell trips whose way over the axes is not that of their shape: rings, and stations that are passed twice."""
     for pattern in patterns:
+        off = pattern.away_m > OFF_SHAPE_M  # their place depends on which trains stop beside them
         for k, (a, b) in enumerate(pairwise(pattern.stations)):
-            if a in overrides or b in overrides:
+            if a in overrides or b in overrides or off[k] or off[k + 1]:
                 continue
             shape_m = float(pattern.along_m[k + 1] - pattern.along_m[k])
             line_m = sum(abs(leg.to_km - leg.from_km) for leg in network.way((a, b))) * 1000.0
@@ -177,10 +195,13 @@ def _written(
         notes.problems.append(Problem("no_way", "", found, "stops at different places", place="trips.txt"))
     if still:
         return {}
+    tolerance_s = ROUNDED_S if rounding_s(trips) == MINUTE_S else 0.0
+    pace = told_pace(trips, stops.station, network, options, tolerance_s)
     _fill(timed, stops, tracks, options, notes)
     trains, services = train_rows(timed, tracks, stops, ids, options)
     rotations = rotations_of(timed, stops, notes)
-    _tell_assumed(trips, tracks, options, notes)
+    _tell_assumed(trips, tracks, options, tolerance_s, notes)
+    notes.assumed += [pace] if pace else []
     times = [time for each in timed for time in each.span()]
     parts = {"trains": trains, "services": services, "rotations": rotations}
     texts = {
@@ -188,7 +209,7 @@ def _written(
         "supply.yaml": supply_text(tracks),
         "timetable.yaml": timetable_text(parts),
     }
-    return {"README.md": readme_text(name, notes), **texts, "study.yaml": study_text(name, min(times), max(times))}
+    return {"README.md": readme_text(name, notes), **texts, "study.yaml": study_text(name, min(times), max(times), tolerance_s)}
 
 
 def _legs(trip: Trip, stops: Stops, network: Network) -> list[Leg]:
@@ -216,7 +237,7 @@ def _fill(timed: Sequence[Timed], stops: Stops, tracks: Tracks, options: GtfsOpt
         )
 
 
-def _tell_assumed(trips: Sequence[Trip], tracks: Tracks, options: GtfsOptions, notes: Notes) -> None:
+def _tell_assumed(trips: Sequence[Trip], tracks: Tracks, options: GtfsOptions, tolerance_s: float, notes: Notes) -> None:
     once = sum(stop.arrival == stop.departure for trip in trips for stop in trip.stops[1:-1] if not stop.passes)
     if once:
         notes.assumed.append(
@@ -225,10 +246,10 @@ def _tell_assumed(trips: Sequence[Trip], tracks: Tracks, options: GtfsOptions, n
         )
     else:
         notes.assumed.append(f"every stop on the way lasts {options.min_dwell_s:g} s at least, or as planned if that is less")
-    if rounding_s(trips) == 60.0:
+    if tolerance_s:
         notes.assumed.append(
-            "times are whole minutes, rounded: a train less than 30 s late may be on time (feasibility of the study:"
-            " tolerance_s: 30)"
+            f"times are whole minutes, rounded: a train less than {tolerance_s:g} s late may be on time (study.yaml:"
+            f" feasibility: {{tolerance_s: {tolerance_s:g}}})"
         )
     double = ", ".join(f"{each.track} (km {each.from_km:g} to {each.to_km:g})" for each in tracks.seconds) or "none"
     notes.assumed += [

@@ -16,6 +16,12 @@ _A_M, _E2 = 6_378_137.0, 6.69437999014e-3
 _SLACK_M = 50.0
 """Stops on one straight piece may be drawn this much against their order."""
 
+OFF_SHAPE_M = 150.0
+"""A stop further from its shape is taken as drawn wrongly: it must not pull its neighbours from their places."""
+
+_PULL_M = 1e-3
+"""What each further metre adds to the cost of such a stop [m²/m]: it decides where nothing else does."""
+
 
 def _metres_per_degree(lat: Floats) -> tuple[Floats, Floats]:
     """Return lengths of a degree of latitude and of longitude [m], by the radii of curvature of the ellipsoid."""
@@ -102,10 +108,12 @@ def place_in_order(line: Polyline, lat: Floats, lon: Floats) -> tuple[Floats, Fl
     """Return where stops in their order lie along a line, and how far from it [m].
 
     Of all places that do not fall along the line those with the least sum of squared distances: a line that comes by twice,
-    or turns back, gets each stop at its own turn. Solved by dynamic programming over the segments.
+    or turns back, gets each stop at its own turn. Solved by dynamic programming over the segments. Beyond `OFF_SHAPE_M` a
+    distance counts hardly more, so that a stop with wrong coordinates leaves the others where they are; it is put between
+    them (`_between`).
     """
     found = [line.nearest(float(a), float(b)) for a, b in zip(lat, lon, strict=True)]
-    costs = np.array([away**2 for _, away in found])
+    costs = np.array([np.minimum(away, OFF_SHAPE_M) ** 2 + _PULL_M * np.maximum(away - OFF_SHAPE_M, 0.0) for _, away in found])
     best = np.empty_like(costs)
     best[0] = costs[0]
     stays = np.zeros(costs.shape, bool)
@@ -120,4 +128,15 @@ def place_in_order(line: Polyline, lat: Floats, lon: Floats) -> tuple[Floats, Fl
         chosen[k] = int(np.argmin(best[k][: last + 1 if stays[k + 1][last] or last == 0 else last]))
     along = np.array([found[k][0][j] for k, j in enumerate(chosen)])
     away = np.array([found[k][1][j] for k, j in enumerate(chosen)])
-    return np.maximum.accumulate(along), away
+    return _between(np.maximum.accumulate(along), away), away
+
+
+def _between(along: Floats, away: Floats) -> Floats:
+    """Return places along a line where stops off it, pushed onto a neighbour by their order, lie evenly between neighbours."""
+    off = away > OFF_SHAPE_M
+    good = np.flatnonzero(~off)
+    places = along.copy()
+    for before, after in zip(good[:-1], good[1:], strict=True):
+        if after - before > 1 and np.min(np.diff(along[before : after + 1])) <= _SLACK_M:
+            places[before : after + 1] = np.linspace(along[before], along[after], after - before + 1)
+    return places

@@ -22,13 +22,22 @@ _RAIL = "49E1"
 _ROUND_S = 600.0
 
 
-def study_text(name: str, first_s: float, last_s: float) -> str:
-    """Return study.yaml; the clock runs from before the first to after the last train."""
+def study_text(name: str, first_s: float, last_s: float, tolerance_s: float = 0.0) -> str:
+    """Return study.yaml; the clock runs from before the first to after the last train; delays up to the tolerance [s] count not."""
     start = max(math.floor((first_s - _ROUND_S) / _ROUND_S) * _ROUND_S, 0.0)
     end = math.ceil((last_s + 3.0 * _ROUND_S) / _ROUND_S) * _ROUND_S
-    data = {"format": 1, "name": name, "line": "line.yaml", "supply": "supply.yaml", "timetable": "timetable.yaml"}
+    data: dict[str, Any] = {
+        "format": 1,
+        "name": name,
+        "line": "line.yaml",
+        "supply": "supply.yaml",
+        "timetable": "timetable.yaml",
+    }
     clock = {"start": format_time(start), "end": format_time(end), "step_s": 1.0}
-    return "# Made from a GTFS feed: README.md says what was read and what is assumed.\n" + document(data | {"clock": clock})
+    judged = {"feasibility": {"tolerance_s": tolerance_s}} if tolerance_s else {}
+    return "# Made from a GTFS feed: README.md says what was read and what is assumed.\n" + document(
+        data | {"clock": clock} | judged
+    )
 
 
 def line_text(name: str, tracks: Tracks, names: dict[str, str], ids: dict[str, str], options: GtfsOptions) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from tractionpower.errors import Problem
@@ -11,6 +12,11 @@ from tractionpower.io.imports.gtfs.trips import StopTime, Trip, listed
 from tractionpower.io.imports.imported import Notes
 from tractionpower.io.wording import printable
 from tractionpower.model.base import DAY_S, format_time
+
+MINUTE_S = 60.0
+
+ROUNDED_S = 0.5 * MINUTE_S
+"""By so much times of whole minutes may be off [s]."""
 
 _LATEST_START_S = 36 * 3600.0
 """A trip that starts after noon of the day after its service day is doubted."""
@@ -24,16 +30,15 @@ def mend_times(trips: list[Trip], options: GtfsOptions, notes: Notes) -> None:
     for trip in trips:
         _fill_single(trip)
         if options.repair:
-            _repair_days(trip, notes)
-            _repair_order(trip, notes)
+            _repair(trip, notes)
         notes.problems += _check(trip)
     _tell_doubles(trips, options, notes)
 
 
 def rounding_s(trips: Sequence[Trip]) -> float:
-    """Return the step of the published times [s]: 60 for whole minutes, else 1."""
+    """Return the step of the published times [s]: `MINUTE_S` for whole minutes, else 1."""
     times = [time for trip in trips for stop in trip.stops for time in (stop.arrival, stop.departure) if time is not None]
-    return 60.0 if times and all(time % 60.0 == 0.0 for time in times) else 1.0
+    return MINUTE_S if times and all(time % MINUTE_S == 0.0 for time in times) else 1.0
 
 
 def without_times(trip: Trip) -> list[int]:
@@ -60,6 +65,37 @@ def _shift(trip: Trip, first: int, by_s: float) -> None:
     for stop in trip.stops[first:]:
         stop.arrival = None if stop.arrival is None else stop.arrival + by_s
         stop.departure = None if stop.departure is None else stop.departure + by_s
+
+
+def _repair(trip: Trip, notes: Notes) -> None:
+    """Mend the times of a trip and tell it; what cannot be mended as a whole stays as it is in the feed."""
+    given, mended = [replace(stop) for stop in trip.stops], Notes()
+    _leave_out_late(trip, mended)
+    _repair_days(trip, mended)
+    _repair_order(trip, mended)
+    if any(problem.severity == "error" for problem in _check(trip)):
+        trip.stops[:] = given
+    else:
+        notes.repaired += mended.repaired
+
+
+def _leave_out_late(trip: Trip, notes: Notes) -> None:
+    """Leave out times that lie about a day after those on both sides and would, a day earlier, still be out of order."""
+    last = trip.stops[0].departure
+    for k, stop in enumerate(trip.stops[1:-1], start=1):
+        late = [time for time in (stop.arrival, stop.departure) if time is not None]
+        if last is None or not late:
+            continue
+        after = next((each.arrival for each in trip.stops[k + 1 :] if each.arrival is not None), None)
+        returns = after is not None and after >= last and min(late) - after > 0.5 * DAY_S
+        if min(late) - last > _LONGEST_SECTION_S and returns and not last <= min(late) - DAY_S <= max(late) - DAY_S <= after:
+            stop.arrival = stop.departure = None
+            notes.repaired.append(
+                f"trip {printable(trip.id)}, stop {printable(stop.stop)}: {format_time(late[0])} is neither between"
+                f" {format_time(last)} and {format_time(after)} nor a day after that, and was left out"
+            )
+        else:
+            last = stop.departure
 
 
 def _repair_days(trip: Trip, notes: Notes) -> None:
