@@ -44,12 +44,15 @@ class Sheet:
         The cells, and the line of each row in the file.
     name
         Name of the sheet; empty for a CSV file.
+    unsaved
+        Row and column of formulas whose values were not saved: they are told, and are empty here.
     """
 
     label: str
     rows: list[list[Cell]]
     lines: list[int]
     name: str = ""
+    unsaved: set[tuple[int, int]] = field(default_factory=set)
 
     def place(self, row: int) -> str:
         """Return file and line of a row, ``plan.xlsx, sheet Mo-Fr:7``."""
@@ -132,6 +135,7 @@ def _sheet(source: Source, values: Any, formulas: Any, problems: list[Problem]) 
             if cell.data_type == "f" and rows[cell.row - 1][cell.column - 1] is None:
                 found = "a formula whose value was not saved"
                 remedy = "open the file in a spreadsheet, save it, or paste the values"
+                sheet.unsaved.add((cell.row - 1, cell.column - 1))
                 problems.append(sheet.problem("no_value", cell.row - 1, cell.column - 1, found, remedy=remedy))
     return sheet
 

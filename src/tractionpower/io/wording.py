@@ -46,6 +46,15 @@ def shown(value: Any) -> str:
     return shorten(str(value))
 
 
+def counted(number: int, word: str) -> str:
+    """Return a number with its word, which takes an s for all numbers but one.
+
+    >>> counted(1, "train"), counted(0, "train")
+    ('1 train', '0 trains')
+    """
+    return f"{number} {word}{'' if number == 1 else 's'}"
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return the word of `known` that is most like `word`, or an empty string."""
     by_lower = {name.lower(): name for name in known}

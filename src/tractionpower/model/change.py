@@ -220,7 +220,7 @@ def _unknown(path: str, owner: str, step: str, names: list[str]) -> InputError:
     folded = {name.lower(): name for name in names}
     nearest = difflib.get_close_matches(step.lower(), folded, n=1, cutoff=0.5)
     remedy = f"did you mean {folded[nearest[0]]!r}?" if nearest else ""
-    return _refusal("unknown_path", path, f"{owner} has no {step!r}", shown or "nothing, it is empty", remedy)
+    return _refusal("unknown_path", path, f"no {step!r} in {owner}", shown or "nothing, it is empty", remedy)
 
 
 def _refusal(code: str, path: str, found: str, allowed: str = "", remedy: str = "") -> InputError:

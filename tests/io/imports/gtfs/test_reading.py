@@ -51,8 +51,8 @@ def test_all_is_told(tmp_path):
         "2 trips by rail of the day, 8 calls",
         "4 stations",
         "2023-06-07, a Wednesday, is the first such day",
-        "route Z1 (Z), route_type 3, is no rail: 1 trips",
-        "1 trips by rail of other days",
+        "route Z1 (Z), route_type 3, is no rail: 1 trip",
+        "1 trip by rail of other days",
         "every stop lasts 20 s at least",
         "whole minutes",
         "speed limit 80 km/h",
@@ -264,7 +264,7 @@ def test_without_shapes(tmp_path):
     fast = with_trip("F1", "A 10:00:00", "D 10:05:00")
     stops = [stop("A", 0), stop("B", 1, 0.002), stop("C", 2, 0.002), stop("D", 3)]  # off the straight line of the fast train
     found = read(tmp_path, stops=stops, shapes=None, **fast)
-    assert any("3 trips have no shape: straight lines" in row for row in found.notes.assumed)
+    assert any("3 trips without a shape: straight lines" in row for row in found.notes.assumed)
     assert trains(found)["F1"]["route"] == trains(found)["T1"]["route"]
     assert len(plain(found, "line.yaml")["stations"]) == 4
     assert errors(tmp_path, found) == []
@@ -315,7 +315,7 @@ def test_two_calls_at_one_station_are_one(tmp_path):
     found = read(tmp_path, stops=stops, **with_trip("P1", "A 10:00:00", "C 10:04:00", "C2 10:09:00", "D 10:11:00"))
     called = trains(found)["P1"]["calls"]
     assert called[1] == {"station": "C", "arrival": "10:04:00", "departure": "10:09:00", "min_dwell_s": 20.0}
-    assert any("1 calls at the same station" in row for row in found.notes.assumed)
+    assert any("1 call at the same station" in row for row in found.notes.assumed)
 
 
 def test_points_of_shapes_that_are_nowhere(tmp_path):

@@ -91,7 +91,7 @@ def test_no_times_in_between(tmp_path):
     assert codes(found) == []
     assert times(found, "N1")[1:3] == [(None, None), (None, None)]
     assert trains(found)["N1"]["calls"][1]["min_dwell_s"] == 20.0
-    assert any("2 calls of 1 trips have no times (N1)" in row for row in found.notes.assumed)
+    assert any("2 calls of 1 trip without times (N1)" in row for row in found.notes.assumed)
     mended = read(tmp_path, {"repair": True}, **changed)
     assert times(mended, "N1")[1:3] == [(None, "10:03:00"), (None, "10:06:00")]
     assert any("2 calls without times" in row for row in mended.notes.repaired)

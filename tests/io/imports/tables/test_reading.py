@@ -185,7 +185,7 @@ def test_past_midnight(read, trains_of):
     (train,) = trains_of(text)
     assert train["calls"][1] == {"station": "B", "arrival": "23:58:00", "departure": "24:10:00"}
     assert train["calls"][2]["arrival"] == "24:20:00"
-    assert any("1 time past midnight" in told for told in read(text).notes.assumed)
+    assert any("1 train past midnight" in told for told in read(text).notes.assumed)
     beyond = trains_of(
         {
             "one": [
@@ -308,3 +308,67 @@ def test_trains_outside_the_clock_of_the_study_are_a_warning(read):
     (problem,) = found.notes.problems
     assert (problem.code, problem.severity) == ("outside_clock", "warning")
     assert found.texts
+
+
+HEAD = "train,station,arrival,departure\n"
+
+
+def test_one_number_for_two_trains(read):
+    calls = "11,A,,05:50\n11,C,06:11,\n11,A,,07:50\n11,C,08:11,\n"
+    (problem,) = errors(read(HEAD + calls))
+    assert (problem.code, problem.place) == ("duplicate_id", "plan.csv:4")
+    (back,) = errors(read(HEAD + "11,A,,05:50\n11,C,06:11,06:15\n11,A,06:40,\n"))
+    assert back.code == "no_way"  # it turns round
+
+
+def test_a_station_twice_running(read):
+    (problem,) = errors(read(HEAD + "11,A,,05:50\n11,B,06:01,\n11,B,,06:02\n11,C,06:10,\n"))
+    assert (problem.code, problem.path) == ("station_twice", "cell B4")
+    assert "B twice running" in problem.found
+
+
+def test_hours_that_cannot_be(read):
+    doubt, clock = read(HEAD + "11,A,,41:06\n11,C,41:13,\n").notes.problems
+    if doubt.code == "outside_clock":
+        doubt, clock = clock, doubt
+    assert (doubt.code, doubt.severity, doubt.path) == ("late_in_the_day", "warning", "cell B2")
+    assert "41:06:00, which is 17:06:00 a day later" in doubt.found
+    jumps = errors(read(HEAD + "11,A,,06:00\n11,B,30:03,30:04\n11,C,06:07,\n"))
+    assert {(problem.code, problem.path) for problem in jumps} == {("implausible_time", "cell B3")}
+    assert "24.1 h after" in jumps[0].found
+
+
+def test_remarks_below_a_table(read, trains_of):
+    rows = [["train", "station", "arr", "dep"], ["7", "A", None, "06:00"], ["7", "C", "06:07", None], []]
+    sheet = {"one": [*rows, ["Uwaga: test"], [None, "second remark"]]}
+    assert [train["id"] for train in trains_of(sheet)] == ["7"]
+    told = [row for row in read(sheet).notes.ignored if "remark" in row]
+    assert told == [
+        "plan.xlsx, sheet one:5: 'Uwaga: test', a remark",
+        "plan.xlsx, sheet one:6: 'second remark', a remark",
+    ]
+    # what may be a call whose station was forgotten is none
+    for row in (["7"], ["8"]):
+        (problem,) = errors(read({"one": [rows[0], rows[1], row, rows[2]]}))
+        assert (problem.code, problem.place) == ("empty_cell", "plan.xlsx, sheet one:3")
+    (problem,) = errors(read({"one": [*rows, ["7"]]}))
+    assert problem.code == "empty_cell"
+
+
+@pytest.mark.parametrize("name", ["long", "matrix"])
+def test_a_formula_without_a_value_is_told_once(read, name):
+    long = [["train", "station", "arr", "dep"], ["7", "A", None, "06:00"], ["7", "C", "=C9+1", None]]
+    matrix = [["station", "7"], ["A", "06:00"], ["B", "06:03"], ["C", "=B9+1"]]
+    (problem,) = errors(read({"one": {"long": long, "matrix": matrix}[name]}))
+    assert problem.code == "no_value"
+
+
+def test_errors_come_in_the_order_of_the_file_and_none_follows_from_another(read):
+    rows = "11,A,,05:50\n11,Nowhere,06:01,06:02\n11,B,06:10,06:05\n11,C,06:2x,\n12,A,,6 o'clock\n12,Nowhere,06:10,\n"
+    found = [(problem.code, problem.place) for problem in errors(read(HEAD + rows))]
+    assert found == [
+        ("unknown_station", "plan.csv:3"),
+        ("times_fall", "plan.csv:4"),
+        ("no_time", "plan.csv:5"),
+        ("no_time", "plan.csv:6"),
+    ]

@@ -11,7 +11,7 @@ from tractionpower.errors import Problem, UsageError
 from tractionpower.io.imports.gtfs.feed import WEEKDAYS, Feed, rows_of
 from tractionpower.io.imports.gtfs.options import GtfsOptions
 from tractionpower.io.imports.imported import Notes
-from tractionpower.io.wording import printable
+from tractionpower.io.wording import counted, printable
 
 _LONGEST_DAYS = 3660
 _NAMES = tuple(name[:3] for name in WEEKDAYS)
@@ -126,7 +126,7 @@ class _Calendar:
             else:
                 self._exceptions.setdefault(day, {})[row["service_id"]] = row["exception_type"] == "1"
         if bad:
-            found = f"{len(bad)} rows without a date YYYYMMDD, or with an exception_type that is neither 1 nor 2"
+            found = f"{counted(len(bad), 'row')} without a date YYYYMMDD, or with an exception_type that is neither 1 nor 2"
             notes.problems.append(Problem("bad_calendar", "", found, remedy="correct them", place=bad[0]))
         if not feed.has("calendar"):
             notes.read.append("the feed has no calendar.txt: its days are those of calendar_dates.txt")

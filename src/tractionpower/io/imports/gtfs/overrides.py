@@ -15,7 +15,7 @@ from tractionpower.io.imports.gtfs.network import Axis, Network, Place
 from tractionpower.io.imports.gtfs.patterns import Stops
 from tractionpower.io.imports.gtfs.shapes import Polyline
 from tractionpower.io.imports.imported import Notes
-from tractionpower.io.wording import did_you_mean, printable, shown
+from tractionpower.io.wording import counted, did_you_mean, printable, shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,9 +85,11 @@ def apply_overrides(overrides: dict[str, Override], stops: Stops, network: Netwo
     for number, axis_ in enumerate(network.axes):
         _fit(axis_, number, network, {stops.station[name] for name in used})
     if used:
-        notes.read.append(f"{len(used)} stops at the kilometres of the table of stops")
+        notes.read.append(f"{counted(len(used), 'stop')} at the kilometres of the table of stops")
     if len(used) < len(overrides):
-        notes.ignored.append(f"{len(overrides) - len(used)} rows of the table of stops, where no train of the day stops")
+        notes.ignored.append(
+            f"{counted(len(overrides) - len(used), 'row')} of the table of stops, where no train of the day stops"
+        )
 
 
 def check_order(

@@ -63,8 +63,8 @@ def told_pace(
         return None
     most_s, name = max(late)
     return (
-        f"{len(late)} of {len(trips)} trips may be faster than the train {options.train}, a dwell of {options.min_dwell_s:g} s and"
-        f" {options.speed_kmh:g} km/h allow: with {USUAL_MPS2:g} m/s² of accelerating and braking {printable(name)} would be"
+        f"{len(late)} of {len(trips)} trips may be faster than the train {options.train}, a dwell of {options.min_dwell_s:g} s"
+        f" and {options.speed_kmh:g} km/h allow: with {USUAL_MPS2:g} m/s² of accelerating and braking {printable(name)} would be"
         f" {most_s:.0f} s late; the fastest section is {printable(fastest[1])} to {printable(fastest[2])},"
         f" {fastest[0]:.0f} km/h on average. `check` says what the train can do; --train, --dwell and --speed change it"
     )

@@ -17,7 +17,7 @@ from tractionpower.io.imports.gtfs.options import GtfsOptions
 from tractionpower.io.imports.gtfs.shapes import OFF_SHAPE_M, Floats, Polyline, distance_m, place_in_order
 from tractionpower.io.imports.gtfs.trips import Trip, listed
 from tractionpower.io.imports.imported import Notes
-from tractionpower.io.wording import printable
+from tractionpower.io.wording import counted, printable
 
 _SAME_STATION_M = 300.0
 _DETOUR = 1.25
@@ -118,7 +118,7 @@ def merge_calls(trips: Sequence[Trip], stops: Stops, notes: Notes) -> None:
                 kept.append(stop)
         trip.stops[:] = kept
     if merged:
-        notes.assumed.append(f"{merged} calls at the same station as the call before are one call with it")
+        notes.assumed.append(f"{counted(merged, 'call')} at the same station as the call before: made one call with it")
 
 
 def find_patterns(feed: Feed, trips: Sequence[Trip], stops: Stops, options: GtfsOptions, notes: Notes) -> list[Pattern]:
@@ -128,7 +128,9 @@ def find_patterns(feed: Feed, trips: Sequence[Trip], stops: Stops, options: Gtfs
     missing = [key for key in keys if key[0] not in shapes]
     if missing:
         count = sum(keys[key] for key in missing)
-        notes.assumed.append(f"{count} trips have no shape: straight lines from stop to stop, shorter than the real line")
+        notes.assumed.append(
+            f"{counted(count, 'trip')} without a shape: straight lines from stop to stop, shorter than the real line"
+        )
     chains = _with_passed([key[1] for key in missing], stops)
     patterns = []
     for (shape, called, direction), count in sorted(keys.items()):
@@ -188,7 +190,7 @@ def _shapes(feed: Feed, wanted: set[str], notes: Notes) -> dict[str, Polyline]:
     bad = ~on_earth | ~np.isfinite(numbers["shape_pt_sequence"])
     if bad.any():
         place = f"shapes.txt:{first_line(rows[bad])}"
-        found = f"{int(bad.sum())} points without number or coordinates: left out"
+        found = f"{counted(int(bad.sum()), 'point')} without number or coordinates: left out"
         notes.problems.append(Problem("bad_shape", "", found, severity="warning", place=place))
         notes.ignored.append(f"shapes.txt: {found}")
     numbers = numbers[~bad].assign(shape_id=rows.loc[~bad, "shape_id"])

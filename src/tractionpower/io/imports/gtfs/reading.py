@@ -27,7 +27,7 @@ from tractionpower.io.imports.gtfs.trains import Timed, rotations_of, train_rows
 from tractionpower.io.imports.gtfs.trips import Trip, listed, read_trips
 from tractionpower.io.imports.imported import Imported, Notes
 from tractionpower.io.stock_finder import find_rolling_stock, not_found
-from tractionpower.io.wording import printable
+from tractionpower.io.wording import counted, printable
 
 _DIFFERS_M = 300.0
 _DIFFERS = 0.2
@@ -86,7 +86,7 @@ def _texts(source: Path, options: GtfsOptions, notes: Notes) -> dict[str, str]:
     merge_calls(trips, stops, notes)
     short = [trip.id for trip in trips if len(trip.stops) < 2]
     if short:
-        found = f"{len(short)} trips stay at one station and cannot run: {listed(short)}"
+        found = f"{counted(len(short), 'trip')} with all calls at one station, which cannot run: {listed(short)}"
         notes.problems.append(Problem("no_way", "", found, severity="warning", place="stop_times.txt"))
         notes.ignored.append(found)
         trips = [trip for trip in trips if len(trip.stops) > 1]
@@ -229,11 +229,13 @@ def _fill(timed: Sequence[Timed], stops: Stops, tracks: Tracks, options: GtfsOpt
         elif lacking:
             open_[each.trip.id] = len(lacking)
     if filled:
-        notes.repaired.append(f"{filled} calls without times got some between their neighbours, in proportion to the distance")
+        notes.repaired.append(
+            f"{counted(filled, 'call')} without times: put between their neighbours, in proportion to the distance"
+        )
     if open_:
         notes.assumed.append(
-            f"{sum(open_.values())} calls of {len(open_)} trips have no times ({listed(open_)}): the trains stop there without"
-            " any; with repair they get some in proportion to the distance"
+            f"{counted(sum(open_.values()), 'call')} of {counted(len(open_), 'trip')} without times ({listed(open_)}):"
+            " the trains stop there without any; with repair they get some in proportion to the distance"
         )
 
 
@@ -241,8 +243,8 @@ def _tell_assumed(trips: Sequence[Trip], tracks: Tracks, options: GtfsOptions, t
     once = sum(stop.arrival == stop.departure for trip in trips for stop in trip.stops[1:-1] if not stop.passes)
     if once:
         notes.assumed.append(
-            f"{once} calls on the way have one time for arrival and departure: it is the departure, the arrival is not planned;"
-            f" every stop lasts {options.min_dwell_s:g} s at least"
+            f"{counted(once, 'call')} on the way with one time for arrival and departure: it is the departure, the arrival"
+            f" is not planned; every stop lasts {options.min_dwell_s:g} s at least"
         )
     else:
         notes.assumed.append(f"every stop on the way lasts {options.min_dwell_s:g} s at least, or as planned if that is less")

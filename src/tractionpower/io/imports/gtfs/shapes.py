@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,7 +137,7 @@ def _between(along: Floats, away: Floats) -> Floats:
     off = away > OFF_SHAPE_M
     good = np.flatnonzero(~off)
     places = along.copy()
-    for before, after in zip(good[:-1], good[1:], strict=True):
+    for before, after in pairwise(good.tolist()):
         if after - before > 1 and np.min(np.diff(along[before : after + 1])) <= _SLACK_M:
             places[before : after + 1] = np.linspace(along[before], along[after], after - before + 1)
     return places

@@ -23,7 +23,7 @@ _ROUND_S = 600.0
 
 
 def study_text(name: str, first_s: float, last_s: float, tolerance_s: float = 0.0) -> str:
-    """Return study.yaml; the clock runs from before the first to after the last train; delays up to the tolerance [s] count not."""
+    """Return study.yaml; the clock runs from before the first to after the last train, `tolerance_s` is for its delays."""
     start = max(math.floor((first_s - _ROUND_S) / _ROUND_S) * _ROUND_S, 0.0)
     end = math.ceil((last_s + 3.0 * _ROUND_S) / _ROUND_S) * _ROUND_S
     data: dict[str, Any] = {

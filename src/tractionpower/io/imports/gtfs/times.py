@@ -10,7 +10,7 @@ from tractionpower.errors import Problem
 from tractionpower.io.imports.gtfs.options import GtfsOptions
 from tractionpower.io.imports.gtfs.trips import StopTime, Trip, listed
 from tractionpower.io.imports.imported import Notes
-from tractionpower.io.wording import printable
+from tractionpower.io.wording import counted, printable
 from tractionpower.model.base import DAY_S, format_time
 
 MINUTE_S = 60.0
@@ -87,15 +87,14 @@ def _leave_out_late(trip: Trip, notes: Notes) -> None:
         if last is None or not late:
             continue
         after = next((each.arrival for each in trip.stops[k + 1 :] if each.arrival is not None), None)
-        returns = after is not None and after >= last and min(late) - after > 0.5 * DAY_S
-        if min(late) - last > _LONGEST_SECTION_S and returns and not last <= min(late) - DAY_S <= max(late) - DAY_S <= after:
+        if after is None or not last <= after < min(late) - 0.5 * DAY_S:
+            last = stop.departure
+        elif not last <= min(late) - DAY_S <= max(late) - DAY_S <= after:
             stop.arrival = stop.departure = None
             notes.repaired.append(
                 f"trip {printable(trip.id)}, stop {printable(stop.stop)}: {format_time(late[0])} is neither between"
                 f" {format_time(last)} and {format_time(after)} nor a day after that, and was left out"
             )
-        else:
-            last = stop.departure
 
 
 def _repair_days(trip: Trip, notes: Notes) -> None:
@@ -185,9 +184,9 @@ def _tell_doubles(trips: list[Trip], options: GtfsOptions, notes: Notes) -> None
     if options.repair:
         gone = {second for _, second in doubles}
         trips[:] = [trip for trip in trips if trip.id not in gone]
-        notes.repaired.append(f"{len(doubles)} trips with the stops and times of another one were left out: {pairs}")
+        notes.repaired.append(f"{counted(len(doubles), 'trip')} with the stops and times of another one left out: {pairs}")
     else:
-        found = f"{len(doubles)} trips have the stops and times of another one: {pairs}"
+        found = f"{counted(len(doubles), 'trip')} with the stops and times of another one: {pairs}"
         remedy = "they are read as trains of their own; with repair they are left out"
         notes.problems.append(Problem("doubled_trip", "", found, "", remedy, "warning", place="trips.txt"))
 

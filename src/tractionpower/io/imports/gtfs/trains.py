@@ -14,6 +14,7 @@ from tractionpower.io.imports.gtfs.patterns import Stops
 from tractionpower.io.imports.gtfs.tracks import Tracks
 from tractionpower.io.imports.gtfs.trips import Frequency, StopTime, Trip, listed
 from tractionpower.io.imports.imported import Notes
+from tractionpower.io.wording import counted
 from tractionpower.model.base import format_time
 
 
@@ -113,9 +114,10 @@ def rotations_of(timed: Sequence[Timed], stops: Stops, notes: Notes) -> list[dic
         for k, chain in enumerate(whole, start=1):
             rotations.append({"id": block if len(whole) == 1 else f"{block} ({k})", "runs": [each.id for each in chain]})
     if rotations:
-        notes.read.append(f"{len(rotations)} rotations by block_id, without a shortest time of turning round")
+        notes.read.append(f"{counted(len(rotations), 'rotation')} by block_id, without a shortest time of turning round")
     if broken:
         notes.ignored.append(
-            f"{len(broken)} links of block_id, as the next trip starts elsewhere or before the one before ends: {listed(broken)}"
+            f"{counted(len(broken), 'link')} of block_id, as the next trip starts elsewhere or before the one before ends:"
+            f" {listed(broken)}"
         )
     return rotations

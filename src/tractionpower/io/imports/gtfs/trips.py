@@ -16,7 +16,7 @@ from tractionpower.io.imports.gtfs.days import services_of_the_day
 from tractionpower.io.imports.gtfs.feed import Feed, first_line, rows_of
 from tractionpower.io.imports.gtfs.options import GtfsOptions
 from tractionpower.io.imports.imported import Notes
-from tractionpower.io.wording import did_you_mean, printable, shown
+from tractionpower.io.wording import counted, did_you_mean, printable, shown
 
 RAIL_TYPES = frozenset({"2", *map(str, range(100, 118))})
 """Rail in GTFS, and railway services in the extended route types."""
@@ -74,7 +74,7 @@ def read_trips(feed: Feed, options: GtfsOptions, notes: Notes) -> list[Trip]:
     today = chosen[chosen["service_id"].isin(services)]
     others = len(chosen) - len(today)
     if others and len(today):
-        notes.ignored.append(f"{others} trips by rail of other days")
+        notes.ignored.append(f"{counted(others, 'trip')} by rail of other days")
     today = _once(today, options, notes)
     if today.empty:
         return []
@@ -88,11 +88,13 @@ def read_trips(feed: Feed, options: GtfsOptions, notes: Notes) -> list[Trip]:
             continue
         trips.append(Trip(row["trip_id"], row["route_id"], row["shape_id"], row["direction_id"], row["block_id"], stops))
     if without:
-        found = f"{len(without)} trips have less than two stops in stop_times.txt and cannot run: {listed(without)}"
+        found = f"{counted(len(without), 'trip')} with less than two stops in stop_times.txt, which cannot run: {listed(without)}"
         notes.problems.append(Problem("trip_without_stops", "", found, severity="warning", place="stop_times.txt"))
-        notes.ignored.append(f"{len(without)} trips without stops: {listed(without)}")
+        notes.ignored.append(f"{counted(len(without), 'trip')} without stops: {listed(without)}")
     _add_frequencies(feed, trips, notes)
-    notes.read.append(f"{len(trips)} trips by rail of the day, {sum(len(trip.stops) for trip in trips)} calls")
+    notes.read.append(
+        f"{counted(len(trips), 'trip')} by rail of the day, {counted(sum(len(trip.stops) for trip in trips), 'call')}"
+    )
     return trips
 
 
@@ -105,10 +107,12 @@ def _of_routes(feed: Feed, options: GtfsOptions, notes: Notes) -> pd.DataFrame:
         name = printable(
             f"{row['route_id']} ({row['route_short_name'] or row['route_long_name']}), route_type {row['route_type']}"
         )
-        notes.ignored.append(f"route {name}, is no rail: {counts.get(row['route_id'], 0)} trips")
+        notes.ignored.append(f"route {name}, is no rail: {counted(counts.get(row['route_id'], 0), 'trip')}")
     unknown = sorted(set(trips["route_id"]) - set(routes["route_id"]))
     if unknown:
-        found = f"{sum(counts[name] for name in unknown)} trips of routes that routes.txt does not have: {listed(unknown)}"
+        found = (
+            f"{counted(sum(counts[name] for name in unknown), 'trip')} of routes that routes.txt does not have: {listed(unknown)}"
+        )
         notes.problems.append(Problem("unknown_route", "", found, severity="warning", place="trips.txt"))
         notes.ignored.append(found)
     wanted = rail & _asked(routes, ("route_id", "route_short_name"), options.routes, "routes", notes)
@@ -118,7 +122,9 @@ def _of_routes(feed: Feed, options: GtfsOptions, notes: Notes) -> pd.DataFrame:
         # with one agency routes need not name it
         wanted &= routes["agency_id"].isin(set(agencies.loc[known, "agency_id"])) | ((len(agencies) == 1) & bool(known.all()))
     for _, row in rows_of(routes[rail & ~wanted]):
-        notes.ignored.append(f"route {printable(row['route_id'])}, not asked for: {counts.get(row['route_id'], 0)} trips by rail")
+        notes.ignored.append(
+            f"route {printable(row['route_id'])}, not asked for: {counted(counts.get(row['route_id'], 0), 'trip')} by rail"
+        )
     found_trips = trips[trips["route_id"].isin(set(routes.loc[wanted, "route_id"]))]
     if found_trips.empty and not notes.problems:
         types = ", ".join(f"{kind}: {n}" for kind, n in sorted(Counter(routes["route_type"]).items()))
@@ -162,14 +168,16 @@ def _stop_times(feed: Feed, wanted: set[str], options: GtfsOptions, notes: Notes
         rows[name] = seconds(rows[f"{name}_time"])
         bad = rows[name].isna() & (rows[f"{name}_time"] != "")
         if bad.any() and options.repair:
-            notes.repaired.append(f"{int(bad.sum())} times that are none, such as {_first(rows[bad], f'{name}_time')}: left out")
+            notes.repaired.append(
+                f"{counted(int(bad.sum()), 'time')} that are none, such as {_first(rows[bad], f'{name}_time')}: left out"
+            )
         else:
             _refuse(rows, bad, "bad_time", partial(_no_time, f"{name}_time"), notes)
     known = rows["stop_id"].isin(set(feed.table("stops")["stop_id"]))
     _refuse(rows, ~known, "unknown_stop", lambda row: f"the stop {shown(row['stop_id'])} is not in stops.txt", notes)
     doubled = rows.duplicated(["trip_id", "sequence"])
     if doubled.any() and options.repair:
-        notes.repaired.append(f"{int(doubled.sum())} calls with a stop_sequence that their trip has already: left out")
+        notes.repaired.append(f"{counted(int(doubled.sum()), 'call')} with a stop_sequence that their trip has already: left out")
         rows = rows[~doubled]
     else:
         _refuse(rows, doubled, "doubled_call", lambda row: f"stop_sequence {shown(row['stop_sequence'])} twice in a trip", notes)
@@ -214,7 +222,7 @@ def _add_frequencies(feed: Feed, trips: list[Trip], notes: Notes) -> None:
     headway = pd.to_numeric(rows["headway_secs"], errors="coerce")
     bad = ~((before > first) & headway.between(1.0, 1e6))
     if bad.any():
-        found = f"{int(bad.sum())} rows whose start_time, end_time or headway_secs make no sense"
+        found = f"{counted(int(bad.sum()), 'row')} whose start_time, end_time or headway_secs make no sense"
         place = f"frequencies.txt:{first_line(rows[bad])}"
         allowed = "times HH:MM:SS, start before end, a headway of 1 s or more"
         notes.problems.append(Problem("bad_frequency", "", found, allowed, place=place))
@@ -224,7 +232,7 @@ def _add_frequencies(feed: Feed, trips: list[Trip], notes: Notes) -> None:
         by_id[row["trip_id"]].frequencies.append(runs)
     if len(rows):
         loose = int((rows["exact_times"] != "1").sum())
-        notes.read.append(f"{len(rows)} rows of frequencies.txt as periodic services")
+        notes.read.append(f"{counted(len(rows), 'row')} of frequencies.txt as periodic services")
         if loose:
             notes.assumed.append(
                 f"{loose} of them promise an interval only (exact_times is not 1): runs start at equal intervals"

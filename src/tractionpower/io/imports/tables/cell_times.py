@@ -18,7 +18,7 @@ PASS_SIGNS = frozenset(("|", "││", "│", "-", "–", "—", "--", "->", "�
 _DOTTED = re.compile(r"(\d{1,2})\.([0-5]\d)(?:\.([0-5]\d))?")
 _PASSING = re.compile(r"\((?P<a>[^)]+)\)|[|│](?P<b>[^|│]+)[|│]?|(?P<c>[^|│]+)[|│]")
 
-Way = Literal["text", "dots", "number", "date"]
+Way = Literal["text", "dots", "number", "date", "bad"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class CellTime:
     passes
         Whether it is marked as passing.
     way
-        How it was written, where that needs a word.
+        How it was written, where that needs a word; ``bad`` if it is no time, which is told elsewhere.
     """
 
     seconds: float | None

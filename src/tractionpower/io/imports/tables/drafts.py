@@ -10,6 +10,8 @@ from tractionpower.io.imports.tables.cell_times import ALLOWED, CellTime, read_t
 from tractionpower.io.wording import shown
 from tractionpower.model.line import Station
 
+_BAD = CellTime(None, way="bad")
+
 
 @dataclass(slots=True)
 class Stop:
@@ -43,7 +45,10 @@ class Stop:
 
 @dataclass(slots=True)
 class Draft:
-    """A train: its number, where it begins in the file, what it is made of, its calls in the order of the file."""
+    """A train: its number, where it begins in the file, what it is made of, its calls in the order of the file.
+
+    `is_whole` is false where a row or cell of it could not be used: what is lacking then is no fault of its own.
+    """
 
     id: str
     sheet: Sheet
@@ -53,6 +58,7 @@ class Draft:
     category: str = ""
     days: str = ""
     stops: list[Stop] = field(default_factory=list)
+    is_whole: bool = True
 
     def problem(self, code: str, found: str, allowed: str = "", remedy: str = "", stop: Stop | None = None) -> Problem:
         """Return a problem of the train, or of one of its calls."""
@@ -61,10 +67,12 @@ class Draft:
 
 
 def time_at(sheet: Sheet, row: int, column: int, problems: list[Problem]) -> CellTime | None:
-    """Return what a cell says of a time; what is no time becomes a problem."""
+    """Return what a cell says of a time; what is no time becomes a problem, and a time that is marked as bad."""
     cell: Cell = sheet.rows[row][column]
+    if (row, column) in sheet.unsaved:
+        return _BAD
     try:
         return read_time(cell)
     except ValueError as error:
         problems.append(sheet.problem("no_time", row, column, f"{error} is no time", ALLOWED))
-        return None
+        return _BAD

@@ -44,9 +44,11 @@ def read_long(sheet: Sheet, header: Header, names: StationNames, notes: Notes) -
     drafts: dict[str, Draft] = {}
     order: dict[int, float] = {}
     _tell_columns(sheet, header, notes)
+    remarks = _remarks(sheet, header)
+    notes.ignored += [f"{sheet.place(row)}: {shown(text)}, a remark" for row, text in remarks.items()]
     for row in range(header.row + 1, len(sheet.rows)):
         texts = {name: text_of(sheet.rows[row][column]) for name, column in header.columns.items()}
-        if not any(texts.values()):
+        if row in remarks or not any(texts.values()):
             continue
         if not texts["train"] or not texts["station"]:
             lacking = "train" if not texts["train"] else "station"
@@ -55,12 +57,36 @@ def read_long(sheet: Sheet, header: Header, names: StationNames, notes: Notes) -
         draft = drafts.setdefault(texts["train"], Draft(texts["train"], sheet, row, header.columns["train"]))
         _add_words(draft, texts, row, notes)
         stop = _stop(sheet, header, row, names, notes)
+        if stop is None or "bad" in (each.way for each in (stop.arrival, stop.departure) if each is not None):
+            draft.is_whole = False
         if stop is not None:
             draft.stops.append(stop)
             order[id(stop)] = _order(sheet, header, row, notes)
     for draft in drafts.values():
         draft.stops.sort(key=lambda stop: order[id(stop)])
     return list(drafts.values())
+
+
+def _remarks(sheet: Sheet, header: Header) -> dict[int, str]:
+    """Return rows with a single text that is no train of the table, behind an empty row or under all calls; and the texts.
+
+    A text beside the columns of the table is one wherever it stands.
+    """
+    filled = {row: [k for k, cell in enumerate(sheet.rows[row]) if cell is not None] for row in range(len(sheet.rows))}
+    train, station = header.columns["train"], header.columns["station"]
+    calls = [row for row in filled if row > header.row and {train, station} <= set(filled[row])]
+    numbers = {text_of(sheet.rows[row][train]) for row in calls}
+    unsaved = {row for row, _ in sheet.unsaved}
+    remarks: dict[int, str] = {}
+    for row in range(header.row + 1, len(sheet.rows)):
+        cells = filled[row]
+        is_apart = not filled[row - 1] or sheet.lines[row] > sheet.lines[row - 1] + 1 or row - 1 in remarks
+        text = " ".join(text_of(sheet.rows[row][k]) for k in cells)
+        if cells and not set(cells) & set(header.columns.values()):
+            remarks[row] = text
+        elif len(cells) == 1 and (is_apart or row > max(calls, default=row)) and text not in numbers and row not in unsaved:
+            remarks[row] = text
+    return remarks
 
 
 def _tell_columns(sheet: Sheet, header: Header, notes: Notes) -> None:

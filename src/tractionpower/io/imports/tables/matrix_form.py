@@ -164,6 +164,8 @@ def read_matrix(sheet: Sheet, matrix: Matrix, names: StationNames, notes: Notes)
             cell = matrix.at(index, column)
             station = found.get(index)
             said = time_at(sheet, *cell, notes.problems) if index in found else None
+            if said is not None and (station is None or said.way == "bad"):
+                draft.is_whole = False
             if said is not None and station is not None:
                 entries.append(Entry(cell, station, said, kind))
         is_reversed = runs_upwards(entries)
@@ -214,4 +216,7 @@ def _stops(entries: Sequence[Entry], *, is_reversed: bool) -> list[Stop]:
 
 
 def _has_times(sheet: Sheet, matrix: Matrix, index: int) -> bool:
-    return any(sheet.rows[row][column] is not None for row, column in (matrix.at(index, train) for train, _ in matrix.trains))
+    return any(
+        sheet.rows[row][column] is not None or (row, column) in sheet.unsaved
+        for row, column in (matrix.at(index, train) for train, _ in matrix.trains)
+    )

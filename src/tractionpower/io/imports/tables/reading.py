@@ -21,7 +21,7 @@ from tractionpower.io.imports.tables.settling import Settler
 from tractionpower.io.imports.tables.station_names import StationNames
 from tractionpower.io.imports.tables.ways import Ways, usual_tracks
 from tractionpower.io.stock_finder import known_rolling_stock
-from tractionpower.io.wording import printable, shown
+from tractionpower.io.wording import counted, printable, shown
 from tractionpower.io.yaml_text import document
 from tractionpower.model.base import FORMAT, format_time
 from tractionpower.model.line import Line
@@ -70,14 +70,21 @@ def read_table_timetable(
     drafts = _drafts(read_grids(source, sheet, notes), frame.line, notes)
     settler = Settler(Ways(frame.line, usual), known_rolling_stock("trains", frame.folder), train, dwell_s)
     runs = [run for draft in drafts if (run := settler.run(draft)) is not None]
-    notes.problems += settler.problems
-    if not notes.problems:
+    notes.problems += settler.problems + settler.doubts
+    notes.problems.sort(key=_in_file)
+    if not any(problem.severity == "error" for problem in notes.problems):
         notes.problems += _refused(runs)
     if any(problem.severity == "error" for problem in notes.problems):
         return Imported({}, notes)
-    notes.read.append(f"{len(runs)} trains with {sum(len(run['calls']) for run in runs)} calls")
+    notes.read.append(f"{counted(len(runs), 'train')} with {sum(len(run['calls']) for run in runs)} calls")
     notes.assumed += settler.told()
     return Imported(_texts(source, frame, runs, (min(settler.span_s), max(settler.span_s)), notes), notes)
+
+
+def _in_file(problem: Problem) -> tuple[str, int]:
+    """Return file or sheet and line of a problem, for the order in which it is told."""
+    label, _, line = problem.place.rpartition(":")
+    return (label, int(line)) if line.isdecimal() else (problem.place, 0)
 
 
 def _usual(line: Line, tracks: str | None, notes: Notes) -> tuple[str, str] | None:
