@@ -73,8 +73,24 @@ def test_options_reach_the_importer_by_its_own_names(monkeypatch):
         "min_dwell_s": 25.0,
         "stops": Path("places.csv"),
         "stop_tolerance_m": 80.0,
+        "folder": Path("feed"),
     }
     assert Path("feed/line.yaml").is_file()
+
+
+def test_rolling_stock_alone_is_no_study_to_check(capsys):
+    source = Path(__file__).parents[2] / "validation" / "trainruns" / "source" / "trains" / "local.yaml"
+    assert main(["import", "railtoolkit", str(source), "stock"]) == 0
+    (told,) = [line for line in capsys.readouterr().out.splitlines() if line.startswith("next: ")]
+    assert "tractionpower check" not in told
+    command, file = told.removeprefix("next: tractionpower ").partition(";")[0].split(" ", 1)
+    assert main([command, file, "--out", "curves"]) == 0  # what it says can be done
+
+
+def test_a_day_that_is_none_is_wrong_usage(capsys):
+    source = Path(__file__).parents[2] / "lines" / "wkd" / "source"
+    assert main(["import", "gtfs", str(source), "new", "--date", "2023-06-31"]) == 2
+    assert "--date 2023-06-31: there is no such day" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

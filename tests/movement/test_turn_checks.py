@@ -84,10 +84,27 @@ def test_a_run_is_named_once_at_either_end(turns, path):
 
 
 def test_a_circle_never_begins():
-    problems = check_movement(study(OUT, BACK, **rotation("out", "back", "out")))
+    # over two rotations, so that neither names a run twice
+    turns = {"rotations": [{"runs": ["out", "back"]}, {"runs": ["back", "out"]}]}
+    problems = check_movement(study(OUT, BACK, **turns))
     (circle,) = [problem for problem in problems if problem.code == "circular_turns"]
     assert circle.severity == "error"
     assert "out becomes back becomes out" in circle.found or "back becomes out becomes back" in circle.found
+
+
+def test_a_rotation_that_names_a_run_twice_is_told_once():
+    (problem,) = check_movement(study(OUT, BACK, **rotation("out", "back", "out")))
+    assert (problem.code, problem.path) == ("circular_turns", "timetable.rotations[0].runs[2]")
+    assert problem.found.startswith("the rotation names out twice")
+
+
+def test_a_join_into_a_run_of_a_rotation_has_one_reason():
+    # back comes from out already; it would leave before the portions arrive, and elsewhere
+    far = to("far", "A", "Q", 0.0, 800.0)
+    wrong = {"joins": [{"portions": ["more", "far"], "into": "back"}]}
+    assert told(study(OUT, MORE, far, BACK, **rotation("out", "back"), **wrong)) == [
+        ("turned_twice", "joins[0].portions[0]", "error")
+    ]
 
 
 def test_a_rotation_that_leaves_before_it_arrives():

@@ -69,8 +69,20 @@ def import_(  # noqa: PLR0917 - typer makes options of them
         raise typer.Exit(INPUT_ERRORS)
     write_files(folder, imported.texts)
     typer.echo(f"wrote {len(imported.texts)} files into {folder}: {', '.join(_few(list(imported.texts)))}")
-    typer.echo(f"next: tractionpower check {folder}")
+    typer.echo(f"next: {_next(folder, list(imported.texts))}")
     raise typer.Exit(DONE)
+
+
+def _next(folder: Path, names: list[str]) -> str:
+    """Return what to do with the files: check a study, look at rolling stock, which is none by itself."""
+    from tractionpower.io.finder import STUDY_FILE
+
+    if (folder / STUDY_FILE).is_file():
+        return f"tractionpower check {folder}"
+    trains = [name for name in names if "/trains/" in name] or [name for name in names if "/vehicles/" in name]
+    if not trains:
+        return f"add {STUDY_FILE} to {folder}"
+    return f"tractionpower curves {folder / trains[0]}; there is no {STUDY_FILE} in {folder}, rolling stock is part of a study"
 
 
 def _refuse_files(folder: Path, force: bool) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
 
 from tractionpower.alignment.lines import tracks_by_line
@@ -39,7 +39,10 @@ def check_turns(scenario: Scenario, planned: Mapping[str, PlannedRun]) -> list[P
     names = run_names(scenario.timetable)
     problems = list(_check_names(links, names))
     known = [link for link in links if link.first in names and link.then in names]
-    problems += [*_check_once(known), *_check_cycle(known)]
+    for check in (_check_rotations, _check_once, _check_cycle):  # a link that cannot be is told for its first reason only
+        told = list(check(known))
+        problems += told
+        known = _without(known, {problem.path for problem in told})
     runs = {run.id: run for run in scenario.runs if not run.id.endswith(DAY_BEFORE)}
     lines = tracks_by_line(scenario.line, scenario.supply)
     for link in known:
@@ -76,15 +79,43 @@ def _check_names(links: Sequence[Link], names: Mapping[str, object]) -> Iterator
                 yield unknown("run", path, name, names, "name a train of the timetable, or a run of a service: ID HH:MM")
 
 
+def _root(link: Link) -> str:
+    """Return the path of the rotation, join or split that declares a link."""
+    return link.path.rpartition(".")[0]
+
+
+def _without(links: Sequence[Link], paths: Collection[str]) -> list[Link]:
+    """Return links without those at paths; a join or split goes as a whole, as none of it can come about."""
+    gone = {_root(link) for link in links if link.path in paths and link.kind != "rotation"}
+    return [link for link in links if link.path not in paths and _root(link) not in gone]
+
+
+def _check_rotations(links: Sequence[Link]) -> Iterator[Problem]:
+    """Yield runs that a rotation names twice."""
+    named: dict[str, set[str]] = defaultdict(set)
+    for link in links:
+        if link.kind != "rotation":
+            continue
+        before = named[_root(link)]
+        before.add(link.first)
+        if link.then in before:
+            found = f"the rotation names {link.then} twice: it would never begin"
+            yield Problem("circular_turns", link.path, found, remedy="a day's rotation has a first and a last run: leave one out")
+        before.add(link.then)
+
+
 def _check_once(links: Sequence[Link]) -> Iterator[Problem]:
     """Yield runs that would become several trains, or come from several, otherwise than by one split or join."""
+    told: set[str] = set()
     for side, kind, what in (("first", "split", "become"), ("then", "join", "be made of")):
         owners: dict[str, list[Link]] = defaultdict(list)
         for link in links:
             owners[getattr(link, side)].append(link)
         for name, mine in owners.items():
-            roots = {link.path.rpartition(".")[0] for link in mine}
-            if len(mine) > 1 and not (len(roots) == 1 and mine[0].kind == kind):
+            roots = {_root(link) for link in mine}
+            blamed = mine[1].path if len(mine) > 1 and mine[1].kind == "rotation" else _root(mine[-1])
+            if len(mine) > 1 and not (len(roots) == 1 and mine[0].kind == kind) and blamed not in told:
+                told.add(blamed)
                 found = f"{name} would {what} several trains: {listed(link.path for link in mine)}"
                 yield Problem(
                     "turned_twice", mine[1].path, found, "one rotation, join or split at either end of a run", "leave one out"
