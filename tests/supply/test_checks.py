@@ -338,3 +338,33 @@ def test_everything_is_told_at_once(check):
     assert codes(problems) == [
         "dead_load", "dead_stretch", "gap", "no_contact_line", "no_return_circuit", "off_track", "unknown_system",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("more", "warned"),
+    [
+        ({"units": 2}, True),
+        ({}, False),
+        ({"units": 2, "units_in_service": 1}, False),
+        ({"units": 2, "units_in_service": 2}, False),
+        ({"units": 2, "grid_resistance_ohm": 0.02}, False),
+    ],
+)
+def test_units_without_effect(line, more, warned):
+    supply = Supply(
+        system="dc3000",
+        substations=(station("A", 0.0, **more), B),
+        contact_lines=(wire(),),
+        return_circuit=(rails(),),
+    )
+    problems = check_supply(supply, line, LIMITS)
+    assert [(problem.code, problem.path, problem.severity) for problem in problems] == (
+        [("units_without_effect", "supply.substations[A].units", "warning")] if warned else []
+    )
+
+
+def test_units_that_an_event_takes_out_have_an_effect(line):
+    event = {"time": 60.0, "device": "A", "units_in_service": 1}
+    base = {"system": "dc3000", "contact_lines": (wire(),), "return_circuit": (rails(),)}
+    supply = Supply.model_validate(base | {"substations": (station("A", 0.0, units=2), B), "switch_events": (event,)})
+    assert check_supply(supply, line, LIMITS) == []

@@ -21,7 +21,7 @@ from tractionpower.supply.return_checks import check_returns
 from tractionpower.supply.site import Site, survey
 from tractionpower.supply.state_checks import check_states
 from tractionpower.supply.switch_checks import check_busbars, check_feeders, check_switches
-from tractionpower.supply.voltage_checks import check_resistances, check_trips, check_voltages
+from tractionpower.supply.voltage_checks import check_resistances, check_trips, check_units, check_voltages
 
 
 def check_supply(supply: Supply, line: Line, limits: tuple[Limit, ...]) -> list[Problem]:
@@ -43,7 +43,7 @@ def check_supply(supply: Supply, line: Line, limits: tuple[Limit, ...]) -> list[
         problems += check(site)
     problems += check_switches(site, graph) + check_busbars(site) + check_events(site) + check_states(site)
     problems += check_returns(site, graph) + _check_connections(site)
-    return problems + check_resistances(supply) + check_trips(supply) + check_voltages(supply, limits)
+    return problems + check_resistances(supply) + check_units(supply) + check_trips(supply) + check_voltages(supply, limits)
 
 
 def _check_connections(site: Site) -> list[Problem]:

@@ -24,6 +24,24 @@ def check_resistances(supply: Supply) -> list[Problem]:
     ]
 
 
+def check_units(supply: Supply) -> list[Problem]:
+    """Return a warning for each number of units that changes nothing.
+
+    The resistance is that of the whole plant with all of them. Where that of the grid is given too, the units are part of a
+    description that is complete, whether or not one of them is ever out.
+    """
+    switched = {event.device for event in supply.switch_events if event.units_in_service is not None}
+    problems = []
+    for station in supply.substations:
+        is_used = station.units_in_service is not None or station.grid_resistance_ohm > 0.0 or station.id in switched
+        if station.units > 1 and not is_used:
+            found = f"{station.units} units change nothing: internal_resistance_ohm is that of all of them together"
+            remedy = "another number of units needs another internal_resistance_ohm; units_in_service says how many of them feed"
+            path = f"supply.substations[{station.id}].units"
+            problems.append(Problem("units_without_effect", path, found, "", remedy, "warning"))
+    return problems
+
+
 def check_voltages(supply: Supply, limits: tuple[Limit, ...]) -> list[Problem]:
     """Return voltages that the limits of the system do not allow, and limits that are missing."""
     system = supply.system
