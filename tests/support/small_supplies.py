@@ -27,7 +27,7 @@ def end(track="1", km=5.0, side=None):
 def small_supply(**changes):
     """Return substations at km 0, 8 and 20 and a section cabin at km 12, with some lists replaced."""
     parts = {
-        "substations": [station("A", 0.0), station("M", 8.0, units=2), station("B", 20.0)],
+        "substations": [station("A", 0.0), station("M", 8.0, units=2, grid_resistance_ohm=0.01), station("B", 20.0)],
         "section_cabins": [{"id": "C", "km": 12.0}],
         "contact_lines": [CONTACT],
         "return_circuit": [RAILS],
