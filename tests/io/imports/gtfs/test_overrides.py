@@ -116,3 +116,12 @@ def test_the_row_of_the_table_that_mixes_up_the_order_is_named(tmp_path):
     assert problem.place == "stops.csv:3"
     assert "stop B at km 3.5" in problem.found
     assert "A (km 0) and C (km 2.868)" in problem.found
+
+
+def test_a_stop_off_the_shape_where_no_other_is_beyond_it(tmp_path):
+    # the first stop of all trains: no neighbour before it, so its place is the nearest one
+    stops = [stop("A", 0, 0.05), stop("B", 1), stop("C", 2), stop("D", 3)]
+    (problem,) = read(tmp_path, stops=stops).notes.problems
+    assert problem.place == "stops.txt:2"
+    assert "beside B" in problem.found
+    assert kms(read(tmp_path, {"repair": True}, stops=stops)) == pytest.approx(kms(read(tmp_path / "sound")), abs=2e-3)

@@ -13,8 +13,11 @@ from tractionpower.io.imports.imported import Notes
 from tractionpower.io.yaml_text import document, entry
 from tractionpower.model.base import format_time
 
-# Assumed supply: two units PD-16 behind 110 kV, as the line cmk has them.
-_SUBSTATION = {"no_load_voltage_v": 3476.7, "internal_resistance_ohm": 0.0552, "feeder_resistance_ohm": 0.0105}
+# Assumed supply: units PD-16 behind 110 kV, as the line wkd has them.
+_SUBSTATION = {
+    "no_load_voltage_v": 3476.7, "internal_resistance_ohm": 0.0552, "units": 2, "grid_resistance_ohm": 0.01322,
+    "feeder_resistance_ohm": 0.0105,
+}  # fmt: skip
 _SPACING_KM = 10.0
 _SHORT_BRANCH_KM = 6.0
 _CONTACT_LINE = "C95-2C"
