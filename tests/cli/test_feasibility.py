@@ -17,6 +17,7 @@ from train_study import FILES, write_train_study
 
 from tractionpower.cli import main
 from tractionpower.cli.feasibility_summary import headline, show
+from tractionpower.reporting.workbook.feasibility import verdict_in_words
 from tractionpower.results.results import Results
 from tractionpower.studies import feasibility
 from tractionpower.studies.feasibility import study as whole
@@ -241,10 +242,20 @@ def test_the_summary_of_a_search_that_found_nothing(capsys):
     assert "nothing within the bounds saves it (73 runs)" in told
 
 
+def test_what_was_not_judged_is_not_told_as_feasible():
+    told = {"verdict": "not judged", "reserve_left_s": None, "tolerance_s": 1.0, "trains": [{}], "late_trains": 0}
+    assert headline(told).startswith("NOT JUDGED: no train comes to a call with a planned time")
+    assert "give calls an arrival or a departure (1 train)" in headline(told)
+    assert verdict_in_words(told) == (
+        "Not judged: none of 1 trains comes to a call with a planned time within the time that counts",
+        "doubt",
+    )
+
+
 @pytest.mark.parametrize(
     ("reserve", "words"),
     [
-        (None, "no train is late; none has a call"),
+        (None, "no train is late (3 trains"),
         (12.4, "with 12 s of reserve left"),
         (-0.7, "only within the tolerance: 0.7 s"),
     ],

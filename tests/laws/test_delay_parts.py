@@ -12,7 +12,7 @@ from tractionpower.cosimulation.check import check_scenario
 from tractionpower.cosimulation.simulate import simulate
 from tractionpower.model.scenario import Scenario
 from tractionpower.studies.feasibility import judge, lateness
-from tractionpower.studies.feasibility.parts import LOSSES, ORIGINS
+from tractionpower.studies.feasibility.parts import ORIGINS
 
 PLACES = {"A": 0.0, "P": 6.0, "Q": 13.0, "B": 20.0}
 SEEDS = st.integers(0, 10_000)
@@ -91,7 +91,7 @@ def test_parts_add_up_and_are_what_the_run_says(seed):
             continue
         late = max(row.actual_s - row.planned_s, 0.0)
         assert delay.delay_s == pytest.approx(late, abs=1e-6)
-        for names in (("knock_on", *LOSSES), tuple(f"origin_{name}" for name in ORIGINS)):
+        for names in (("knock_on", *ORIGINS), tuple(f"origin_{name}" for name in ORIGINS)):
             parts = [getattr(delay, f"{name}_s") for name in names]
             assert min(parts) >= 0.0
             assert sum(parts) == pytest.approx(late, abs=0.1)

@@ -134,4 +134,5 @@ def test_the_way_of_driving_does_not_count():
     scenario = tight(-5.0)
     slow = Rules(kind="rules", speed_percent=50.0)
     table = scenario.timetable.model_copy(update={"driving": slow})
-    assert check_movement(scenario.model_copy(update={"timetable": table})) == []
+    problems = check_movement(scenario.model_copy(update={"timetable": table}))
+    assert [problem.code for problem in problems] == ["plan_too_slow"]  # not faster than the train

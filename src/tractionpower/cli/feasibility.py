@@ -72,6 +72,8 @@ def feasibility(
         raise unwritten
     tell(f"results: {folder}")
     tell_reports(reports)
+    if reports and not judgement.outcome.run["feasibility"]["late_trains"]:
+        tell("no train is late: there are no figures of delays; train_graph.png shows the trains")
     if no_reports and (folder / WORKBOOK).exists():
         tell(f"{folder / WORKBOOK} is of an earlier run; `tractionpower report {folder}` writes it again")
     tell_beside(writer.beside)
@@ -107,7 +109,7 @@ def _judge(
     try:
         with _bar("running the timetable") as update:
             judgement = judging.execute(update)
-        outcome, is_late = judgement.outcome, judgement.verdict != "feasible"
+        outcome, is_late = judgement.outcome, judgement.verdict == "infeasible"
         writer.finish(outcome.run, outcome.key_figures, is_continued=is_late)  # whatever becomes of a search
     except KeyboardInterrupt:
         kept = judging.keep_unfinished(writer)
@@ -127,7 +129,7 @@ def _searched(scenario: Scenario, judgement: Judgement, writer: RunWriter, wante
     from tractionpower.studies.remedies.search import search
 
     run = judgement.outcome.run
-    if not (wanted or (wanted is None and judgement.verdict != "feasible")):
+    if not (wanted or (wanted is None and judgement.verdict == "infeasible")):
         return run, False
     tell("the verdict is written; Ctrl-C ends the search, and what it has found is kept")
     with _bar("searching what would save it") as update:
@@ -167,4 +169,4 @@ def _exit_code(judgement: Judgement, strict: bool) -> int:
 
     if judgement.outcome.flagged:
         return NOT_COMPLETED
-    return LIMIT_VIOLATED if strict and judgement.verdict != "feasible" else DONE
+    return LIMIT_VIOLATED if strict and judgement.verdict == "infeasible" else DONE

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-MOST_LATE, MOST_RESERVES, MOST_AREAS, MOST_REMEDIES = 12, 5, 8, 5
+MOST_LATE, MOST_RESERVES, MOST_AREAS, MOST_REMEDIES, MOST_SENSITIVITIES = 12, 5, 8, 5, 3
 """Rows of the tables."""
 
 LEAST_LOST_S = 0.05
@@ -29,6 +29,9 @@ CAUSES = {
 }
 """Causes of delays in words."""
 
+COLOURS = {"feasible": "bold green", "infeasible": "bold red", "not judged": "bold yellow"}
+"""Styles of verdicts."""
+
 WHY_WIDTH = 78
 """Width of the column of reasons [characters]; longer ones take more lines."""
 
@@ -39,7 +42,7 @@ def show(run: Mapping[str, Any]) -> None:
 
     console, told = new_console(), run["feasibility"]
     console.print()
-    console.print(headline(told), style="bold green" if told["verdict"] == "feasible" else "bold red")
+    console.print(headline(told), style=COLOURS[told["verdict"]])
     first = told["first"]
     if first:
         console.print(f"worst: train {first['train']}: {first['why']}")
@@ -48,6 +51,7 @@ def show(run: Mapping[str, Any]) -> None:
     _reserves(console, [train for train in trains if train["verdict"] == "feasible" and train["reserve_left_s"] is not None])
     _areas(console, told)
     _remedies(console, told)
+    _sensitivities(console, told.get("sensitivities") or [])
     if run.get("flagged_steps"):
         console.print(f"\n{run['flagged_steps']} steps are flagged, see table events: the verdict is of what was computed")
 
@@ -56,11 +60,16 @@ def headline(told: Mapping[str, Any]) -> str:
     """Return the verdict on the timetable in one line."""
     trains, late = len(told["trains"]), told["late_trains"]
     tolerance = f"tolerance {told['tolerance_s']:g} s"
-    if told["verdict"] != "feasible":
+    if told["verdict"] == "not judged":
+        return (
+            "NOT JUDGED: no train comes to a call with a planned time within the time that counts;"
+            f" give calls an arrival or a departure ({trains} train{'s' if trains > 1 else ''})"
+        )
+    if told["verdict"] == "infeasible":
         return f"INFEASIBLE: {late} of {trains} train{'s' if trains > 1 else ''} late or not there ({tolerance})"
     reserve = told["reserve_left_s"]
     if reserve is None:
-        return f"FEASIBLE: no train is late; none has a call with a planned time ({tolerance})"
+        return f"FEASIBLE: no train is late ({trains} trains, {tolerance})"
     if reserve < 0.0:
         missing = f"{-reserve:.1f} s are missing at the tightest place"
         return f"FEASIBLE, but only within the tolerance: {missing} ({trains} trains, {tolerance})"
@@ -145,10 +154,22 @@ def _remedies(console: Console, told: Mapping[str, Any]) -> None:
     elif found:
         near = found[0]
         console.print(f"\nnothing within the bounds saves it ({search['tried']} runs); nearest: {near['words']}")
-    elif told["verdict"] != "feasible":
+    elif told["verdict"] == "infeasible":
         console.print(f"\nnothing within the bounds saves it ({search['tried']} runs)")
     for note in search["notes"] if not savers or search["interrupted"] else ():
         console.print(note)
+
+
+def _sensitivities(console: Console, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print where a small change of a device does most, with what makes it."""
+    told = [row for row in rows if row["lost_s_change"] is not None and abs(row["lost_s_change"]) >= LEAST_LOST_S]
+    if not told:
+        return
+    table = _table(("what the lost seconds depend on", False), ("by", False), ("all trains [s]", True), ("what", False))
+    for row in told[:MOST_SENSITIVITIES]:
+        change = " ".join(f"--set '{text}'" for text in row["change"]) if len(row["change"]) == 1 else ""
+        table.add_row(f"{row['kind'].replace('_', ' ')}, {row['subject']}", row["per"], f"{row['lost_s_change']:+.1f}", change)
+    _put(console, table, len(told) - MOST_SENSITIVITIES, "in report.xlsx")
 
 
 def kind_in_words(remedy: Mapping[str, Any]) -> str:
@@ -164,4 +185,7 @@ def _put(console: Console, table: Table, more: int, what: str) -> None:
     console.print()
     console.print(table)
     if more > 0:
+        one = {"changes that": "change that", "trains": "train", "areas": "area"} if more == 1 else {}
+        for several, single in one.items():
+            what = what.replace(several, single)
         console.print(f"... and {more} more {what}")

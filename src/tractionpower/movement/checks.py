@@ -22,6 +22,7 @@ from tractionpower.movement.declared import declared_runs
 from tractionpower.movement.drive_checks import check_knee
 from tractionpower.movement.formation import form
 from tractionpower.movement.pace_checks import check_pace
+from tractionpower.movement.plan_checks import check_plans
 from tractionpower.movement.run_checks import Site, check_run
 from tractionpower.movement.stock_checks import check_train, check_vehicle
 from tractionpower.movement.telling import item_paths, listed
@@ -88,7 +89,8 @@ def _check_runs(scenario: Scenario, site: Site) -> list[Problem]:
     problems += check_turns(scenario, planned)
     if site.voltages is None or _has_errors(_check_default_knee(scenario, site.voltages)):
         return problems
-    return problems + check_pace(scenario, [item for item in sound if _drives(item.run, site)])
+    driving = [item for item in sound if _drives(item.run, site)]
+    return problems + check_pace(scenario, driving) + check_plans(scenario, driving)
 
 
 def _check_ids(scenario: Scenario) -> list[Problem]:

@@ -16,6 +16,7 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.model.timetable import Call, Start, Timetable, TrainRun
 from tractionpower.movement.compile import AT_START_M, compile_trains, start_time
 from tractionpower.movement.declared import Declared
+from tractionpower.movement.driving.driven import compile_driven
 from tractionpower.movement.telling import doubt
 
 LEAST_S = 0.5
@@ -23,6 +24,9 @@ LEAST_S = 0.5
 
 STEP_S = 1.0
 LONGEST_STEPS = 86_400
+
+Passed = tuple[list[float], list[float]] | None
+"""When a run comes to its calls [s], and where they are on its route [m]; None: it does not come to its end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +65,14 @@ def check_pace(scenario: Scenario, items: Sequence[Declared]) -> list[Problem]:
         return []
     alike: dict[Any, list[Declared]] = {}
     for item in timed:
-        alike.setdefault(_what_counts(item.run), []).append(item)
-    times = _shortest_times(scenario, [members[0].run for members in alike.values()])
+        alike.setdefault(what_counts(item.run), []).append(item)
+    times = shortest_times(scenario, [members[0].run for members in alike.values()])
     tolerance = max(scenario.feasibility.tolerance_s, LEAST_S)
     found: dict[tuple[str, str], list[tuple[Declared, Section]]] = {}
     for members, passed in zip(alike.values(), times, strict=True):
         for item in members:
             for part in () if passed is None else _short(sections(item.run, *passed), tolerance):
-                found.setdefault(_ends(item, part), []).append((item, part))
+                found.setdefault(ends_of(item, part), []).append((item, part))
     number = {item.path: k for k, item in enumerate(timed)}
     first = {ends: min((number[item.path], part.call) for item, part in rows) for ends, rows in found.items()}
     return [_tell(found[ends]) for ends in sorted(found, key=lambda ends: first[ends])]
@@ -80,7 +84,7 @@ def _planned(run: TrainRun) -> Iterator[float]:
     yield from (time for call in run.calls[1:] for time in (call.arrival, call.departure) if time is not None)
 
 
-def _what_counts(run: TrainRun) -> Any:
+def what_counts(run: TrainRun) -> Any:
     """Return all that the shortest running times of a run depend on."""
     calls = tuple((call.station, call.stops) for call in run.calls)
     speed = run.start.speed_kmh if run.start is not None else 0.0
@@ -88,18 +92,27 @@ def _what_counts(run: TrainRun) -> Any:
     return run.route, calls, speed, *own
 
 
-def _shortest_times(scenario: Scenario, runs: Sequence[TrainRun]) -> list[tuple[list[float], list[float]] | None]:
-    """Return for each run when it comes to its calls, flat out from 0 s on without any dwell [s], and where they are [m].
+def shortest_times(scenario: Scenario, runs: Sequence[TrainRun], *, by_plan: bool = False) -> list[Passed]:
+    """Return for each run when it comes to its calls from 0 s on without any dwell [s], and where they are [m].
 
-    None for one that does not come to its end.
+    Parameters
+    ----------
+    scenario, runs
+        Line and trains, and the runs.
+    by_plan
+        Whether they are driven by their own plans; otherwise flat out.
+
+    Returns
+    -------
+    Nothing for one that does not come to its end.
     """
     width = len(str(len(runs)))
-    bare = tuple(_without_times(run, f"{k:0{width}d}") for k, run in enumerate(runs))
+    bare = tuple(_without_times(run, f"{k:0{width}d}", by_plan) for k, run in enumerate(runs))
     alone = scenario.model_copy(update={"timetable": Timetable.model_construct(trains=bare), "day": None})
-    movement = compile_trains(alone)
+    movement = compile_driven(alone) if by_plan else compile_trains(alone)
     state, tables = new_train_state(movement.tables), movement.tables
     voltage, rows = np.array([(0.0, movement.voltages.u_n)], POINT), np.zeros(LONGEST_STEPS, TRAIN_ROW)
-    found: list[tuple[list[float], list[float]] | None] = []
+    found: list[Passed] = []
     for k, planned in enumerate(movement.runs):
         _, end, _ = run_journey(tables, state, k, (0.0, STEP_S), voltage, rows)
         first = int(tables.trains[k]["first_stop"])
@@ -108,11 +121,12 @@ def _shortest_times(scenario: Scenario, runs: Sequence[TrainRun]) -> list[tuple[
     return found
 
 
-def _without_times(run: TrainRun, name: str) -> TrainRun:
+def _without_times(run: TrainRun, name: str, by_plan: bool) -> TrainRun:
     speed = run.start.speed_kmh if run.start is not None else 0.0
     calls = tuple(Call(station=call.station, stops=call.stops) for call in run.calls)
     start = Start(time=0.0, speed_kmh=speed)
-    return run.model_copy(update={"id": name, "start": start, "calls": calls, "driving": None, "days": None})
+    driving = run.driving if by_plan else None
+    return run.model_copy(update={"id": name, "start": start, "calls": calls, "driving": driving, "days": None})
 
 
 def sections(run: TrainRun, arrived_s: Sequence[float], at_m: Sequence[float]) -> Iterator[Section]:
@@ -153,21 +167,23 @@ def _tell(lacking: Sequence[tuple[Declared, Section]]) -> Problem:
     ranked = sorted(lacking, key=lambda row: (-round(row[1].missing_s, 1), row[0].path))
     worst, part = ranked[0]
     found = (
-        f"faster than {_named(worst)} can: from {' to '.join(_ends(worst, part))} it takes"
+        f"faster than {named(worst)} can: from {' to '.join(ends_of(worst, part))} it takes"
         f" {format_time(round(part.shortest_s, 1))} flat out at nominal voltage, planned are"
         f" {format_time(max(part.planned_s, 0.0))}: {part.missing_s:.1f} s are missing"
     )
     if len(ranked) > 1:
-        others = ", ".join(f"{_named(item)} ({other.missing_s:.1f} s)" for item, other in ranked[1:])
+        others = ", ".join(f"{named(item)} ({other.missing_s:.1f} s)" for item, other in ranked[1:])
         found += f"; likewise {others}"
     remedy = "give it more time, a stronger train or fewer stops; it will be late"
     return doubt("faster_than_train", f"{worst.path}.calls[{part.call}].{part.key}", found, remedy=remedy)
 
 
-def _named(item: Declared) -> str:
+def named(item: Declared) -> str:
+    """Return the kind and the name of what a timetable declares."""
     return f"{'service' if item.is_service else 'train'} {item.run.id}"
 
 
-def _ends(item: Declared, part: Section) -> tuple[str, str]:
+def ends_of(item: Declared, part: Section) -> tuple[str, str]:
+    """Return between which stations a section lies."""
     calls = item.run.calls
     return "the start" if part.since < 0 else calls[part.since].station, calls[part.call].station

@@ -16,7 +16,7 @@ from tractionpower.reporting.delay_styles import CAUSES, ORIGINS
 from tractionpower.reporting.labels import LETTER
 from tractionpower.reporting.places import told
 from tractionpower.reporting.run_data import RunData
-from tractionpower.reporting.style import COLOURS, GREY, INK, PALE, STYLE, new_figure
+from tractionpower.reporting.style import COLOURS, GREY, INK, STYLE, new_figure
 
 WIDTH = 11.7
 """Width of the figures [inches]."""
@@ -40,11 +40,13 @@ def lost_time(data: RunData) -> Figure | None:
     """Draw seconds lost to low voltage in each kilometre of all trains, by type of train, a panel for each line.
 
     Substations are marked, and the sum of each area is written above it. Seconds gained by a voltage above the nominal one
-    stand below zero.
+    are not set against them, and left out.
     """
     lost = data.table("lost_time")
-    if lost is None or not (lost["lost_s"].abs() > LEAST_S).any():
+    lost = lost[lost["lost_s"] > 0.0] if lost is not None else None
+    if lost is None or not (lost["lost_s"] > LEAST_S).any():
         return None
+    lost = lost[lost.groupby(lost["train"].astype(str))["lost_s"].transform("sum") >= LEAST_S]  # others show no bar
     classes = _classes(data, lost)
     lost = lost.assign(kind=_kinds(data, lost, classes))
     lines = [tracks for tracks in data.places.lines if lost["track"].isin(list(tracks)).any()]
@@ -82,7 +84,7 @@ def _kinds(data: RunData, lost: pd.DataFrame, classes: Sequence[str]) -> Any:
 
 
 def _draw_lost(axes: Axes, rows: pd.DataFrame, classes: Sequence[str]) -> None:
-    """Stack the seconds of each kilometre by type of train, losses upwards and gains downwards."""
+    """Stack the seconds of each kilometre by type of train."""
     km = np.sort(rows["km"].round(6).unique())
     above = np.zeros(len(km))
     axes.set_axisbelow(True)
@@ -91,11 +93,8 @@ def _draw_lost(axes: Axes, rows: pd.DataFrame, classes: Sequence[str]) -> None:
         style: Any = {"color": COLOURS[number % len(COLOURS)], "hatch": HATCHES[number], "edgecolor": "white", "linewidth": 0.4}
         axes.bar(km, seconds, 1.0, bottom=above, label=name, **style)
         above = above + seconds
-    below = _by_km(rows[rows["lost_s"] < 0.0], km)
-    if below.min() < -LEAST_S:
-        axes.bar(km, below, 1.0, color=PALE, edgecolor="white", linewidth=0.4, label="gained, above the nominal voltage")
     axes.axhline(0.0, color=INK, linewidth=0.8)
-    axes.set_ylim(1.08 * min(float(below.min()), -1e-9), 1.32 * max(float(above.max()), LEAST_S))
+    axes.set_ylim(0.0, 1.32 * max(float(above.max()), LEAST_S))
 
 
 def _by_km(rows: pd.DataFrame, km: Any) -> Any:

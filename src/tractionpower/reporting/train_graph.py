@@ -5,7 +5,7 @@ Lines with kilometres of their own, a main line and its branches, have a panel e
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -27,6 +27,9 @@ Array = NDArray[Any]
 WIDTH, HEIGHT = 10.5, 6.8
 TALL, LOW, BESIDE = 5.5, 1.8, 1.3
 """Heights of the panel of the longest line and of the lowest one, and of what stands above and below the panels [inches]."""
+
+BESIDE_LABEL = 0.7
+"""Width of what stands beside the words of a legend [inches]."""
 
 MOST_NAMES = 40
 """With more trains their names are left out."""
@@ -187,11 +190,23 @@ def train_graph(panels: Sequence[GraphPanel], title: str) -> Figure:
             found |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
         if single:
             grid[0].set_title(title, loc="left")
-            grid[0].legend(found.values(), found.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=6)
+            grid[0].legend(
+                found.values(), found.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=columns_of(found, 6)
+            )
         else:
             figure.suptitle(title, x=0.01, ha="left", fontsize=11)
-            figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=4)
+            figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=columns_of(found, 4))
         return figure
+
+
+def columns_of(labels: Collection[str], most: int) -> int:
+    """Return in how many columns a legend fits the width of the figure; `most` at most.
+
+    >>> columns_of(["short"] * 6, 6), columns_of(["timetable too tight, carried on"] * 6, 6)
+    (6, 3)
+    """
+    widest = LETTER * max(map(len, labels), default=1) + BESIDE_LABEL
+    return max(1, min(most, int((WIDTH - 1.0) / widest)))
 
 
 def _draw_panel(axes: Axes, panel: GraphPanel, inches: float, *, names: bool, circles: bool) -> None:

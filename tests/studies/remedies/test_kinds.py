@@ -10,7 +10,7 @@ from tractionpower.model.timetable import TrainRun
 from tractionpower.studies.remedies.candidate import combined, touch_the_same
 from tractionpower.studies.remedies.caps import caps
 from tractionpower.studies.remedies.drivings import drivings
-from tractionpower.studies.remedies.fleet import Declared, classes_of, linked
+from tractionpower.studies.remedies.fleet import Declared, classes_of, declared_of, linked
 from tractionpower.studies.remedies.headways import headways
 from tractionpower.studies.remedies.reserves import later_calls, reserves
 from tractionpower.studies.remedies.shifts import shifts
@@ -49,6 +49,20 @@ def test_a_shift_stays_within_its_bounds_and_within_the_clock():
     assert found["X", True].most == 36  # 180 s
     assert found["X", False].most == 4  # 20 s to the start of the clock
     assert found["Y", True].most == 12  # 60 s from its last call to the end of the clock
+
+
+def test_runs_of_the_day_before_are_no_further_runs_of_a_service():
+    calls = [{"station": "A", "departure": 0.0}, {"station": "B", "arrival": 900.0}]
+    first = 23.5 * 3600.0
+    trip = {key: value for key, value in planned("X", 0.0).items() if key != "start"}
+    service = trip | {"id": "S", "calls": calls, "first": first, "last": first + 3600.0, "headway_s": 1800.0}
+    timetable = {"trains": [], "services": [service], "carry_over": True}
+    study = small_study(end_s=86400.0, timetable=timetable)
+    before = [run.id for run in study.runs if run.id.endswith("(day before)")]
+    assert before
+    known = declared_of(study)
+    assert {run.id for run in known[before[0]].runs} == {run.id for run in study.runs} - set(before)
+    assert len(known[before[0]].runs) == 3
 
 
 def test_a_start_of_its_own_is_moved_too():

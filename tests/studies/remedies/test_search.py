@@ -5,7 +5,7 @@ import threading
 from dataclasses import replace
 
 import pytest
-from remedy_cases import judged, small_study
+from remedy_cases import NIGHT, judged, small_study
 
 from tractionpower.model.base import format_time
 from tractionpower.model.change import apply_changes
@@ -158,6 +158,50 @@ def test_faster_than_physics_only_later_times_help(study):
     assert {row.kind for row in remedies.found} == {"reserve"}
     assert remedies.best.size == 20.0
     assert any("X (12 s)" in note for note in remedies.notes)
+
+
+def test_a_turn_round_that_is_too_short_is_told_as_such(study):
+    model = Model(shift=1.0, cap=1.0)
+    judgement = judged({"X": LATE_S, "Y": 0.0}, alone=12.0)
+    rows = tuple(replace(row, origin_timetable_s=0.0, origin_dwell_s=row.origin_timetable_s) for row in judgement.delays)
+    remedies = search(study, replace(judgement, delays=rows), lateness=model.lateness, judge=model.judge)
+    assert {row.kind for row in remedies.found} == {"reserve"}
+    assert any("turn-rounds need: X (12 s)" in note for note in remedies.notes)
+
+
+def test_of_many_trains_a_note_names_the_worst(study):
+    model = Model(shift=1.0, cap=1.0)
+    judgement = judged({"X": LATE_S, "Y": 0.0}, alone=12.0)
+    more = tuple(replace(judgement.delays[0], train=f"Z {k}", origin_timetable_s=20.0 + k) for k in range(170))
+    judgement = replace(judgement, delays=(*judgement.delays, *more))
+    remedies = search(study, judgement, lateness=model.lateness, judge=model.judge)
+    (note,) = (note for note in remedies.notes if "even alone" in note)
+    assert "need: Z 169 (189 s), Z 168 (188 s)" in note
+    assert "(171 in all)" in note
+    assert len(note) < 600
+
+
+class Deceiving(Model):
+    """In a part of the clock changes do twice as much as in the whole."""
+
+    def lateness(self, scenario):
+        factor = 1.0 if scenario.clock.end - scenario.clock.start == NIGHT else 2.0
+        return Model(self.shift * factor, self.cap * factor).lateness(scenario)
+
+
+def test_what_saves_a_part_of_the_clock_only_is_searched_for_again_in_the_whole():
+    study = small_study(end_s=NIGHT, remedies=QUICK | {"kinds": ["departure_shift", "current_cap"]})
+    remedies = Deceiving(shift=0.3, cap=0.1).search(study)
+    assert any("searched again" in note for note in remedies.notes)
+    assert found_of(remedies, "departure_shift", "X").size == 65.0  # in the part 35 s do
+    assert found_of(remedies, "current_cap", "Y").size == 20.0
+    assert all(row.verified for row in remedies.found if row.feasible)
+
+
+def test_what_does_not_suffice_is_not_told_as_verified(study):
+    remedies = Model(shift=0.01, cap=0.1).search(study)
+    assert any(not row.feasible for row in remedies.found)
+    assert all(row.verified == row.feasible for row in remedies.found)
 
 
 def test_the_answer_does_not_depend_on_the_number_of_workers(study):

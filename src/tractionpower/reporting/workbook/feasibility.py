@@ -54,9 +54,11 @@ def add(book: Book) -> None:
 def verdict_in_words(told: dict[str, Any]) -> tuple[str, str]:
     """Return the verdict on a timetable in a sentence, and the style that suits it."""
     trains, late = len(told["trains"]), told["late_trains"]
+    if told["verdict"] == "not judged":
+        return f"Not judged: none of {trains} trains comes to a call with a planned time within the time that counts", "doubt"
     if told["verdict"] == "feasible":
         reserve = told.get("reserve_left_s")
-        words = "no call has a planned time" if reserve is None else f"{reserve:.0f} s of reserve left at the tightest place"
+        words = "no reserve is known" if reserve is None else f"{reserve:.0f} s of reserve left at the tightest place"
         if reserve is not None and reserve < 0.0:
             words = (
                 f"{-reserve:.1f} s are missing at the tightest place, which is within the tolerance of {told['tolerance_s']:g} s"

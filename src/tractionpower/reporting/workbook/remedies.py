@@ -27,6 +27,7 @@ _SENSITIVITIES = (
     Column("subject", widest=28),
     Column("by"),
     Column("change of the seconds lost, all trains [s]", "0.00"),
+    Column("as options of the command line", "beside", 56),
 )
 
 
@@ -77,6 +78,9 @@ def _sensitivities(page: Page, rows: list[dict[str, Any]]) -> None:
         return
     page.section("Sensitivities: how the seconds lost to low voltage change with small changes")
     page.note("Negative: less is lost. From runs with the network, one for each row.")
-    page.table(
-        _SENSITIVITIES, [(row["kind"].replace("_", " "), row["subject"], row["per"], row["lost_s_change"]) for row in rows]
-    )
+    page.table(_SENSITIVITIES, map(_sensitivity, rows))
+
+
+def _sensitivity(row: dict[str, Any]) -> tuple[Any, ...]:
+    change = " ".join(f"--set '{text}'" for text in row.get("change") or ())
+    return row["kind"].replace("_", " "), row["subject"], row["per"], row["lost_s_change"], change

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,13 +14,16 @@ from tractionpower.movement.alone import running_at_calls
 from tractionpower.movement.compile import PlannedRun
 from tractionpower.movement.journey import JourneyCall
 from tractionpower.studies.feasibility.alone import AloneTimes
-from tractionpower.studies.feasibility.parts import Elapsed, Lateness, carry_on, start_lateness
+from tractionpower.studies.feasibility.parts import ON_TIME, RUNNING, Lateness, Ruled, Stage, ruled, split
 from tractionpower.studies.feasibility.recording import LEAST_S, Trace
 
 Floats = NDArray[np.float64]
 
 START = -1
 """Number of the call where a run begins."""
+
+KINDS = ("shortest", "limited", "recorded", "actual")
+"""Running times of a section."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,15 +98,18 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """From one timed call to the next: what lies between, and how late the train is at its end; None where it did not come."""
+    """From one timed call to the next: how late the train is at its end, None where it did not come; and running times [s].
+
+    `moves` tells whether it runs between them at all.
+    """
 
     before: Event
     event: Event
-    elapsed: Elapsed | None
     lateness: Lateness | None
     shortest_s: float
     limited_s: float
     recorded_s: float
+    actual_s: float
     planned_s: float
     moves: bool
 
@@ -114,14 +120,18 @@ class Chain:
 
     Attributes
     ----------
+    ruled, is_plain
+        Times by the rules; whether it is driven flat out, and was before.
     start
-        Lateness at the start of the run.
+        Lateness at the end of the run that it was before.
     links
         One for each timed call.
     spare
         Time by which the train could come before each timed call, flat out on the recorded voltages [s], by number of link.
     """
 
+    ruled: Ruled
+    is_plain: bool
     start: Lateness
     links: list[Link] = field(default_factory=list)
     spare: Floats = field(default_factory=lambda: np.zeros(0))
@@ -130,6 +140,15 @@ class Chain:
     def end(self) -> Lateness:
         """Lateness at the last timed call that the train came to."""
         return next((link.lateness for link in reversed(self.links) if link.lateness is not None), self.start)
+
+
+@dataclass(frozen=True, eq=False)
+class Before:
+    """A run that becomes another one: what is known of it, its chain, and the shortest turn-round [s]."""
+
+    facts: TrainFacts
+    chain: Chain
+    turn_s: float
 
 
 class RunningAt:
@@ -147,11 +166,23 @@ class RunningAt:
         self._of = {
             "actual": actual, "recorded": recorded, "limited": alone.limited.at_calls_s, "shortest": alone.shortest.at_calls_s,
         }  # fmt: skip
+        self._facts, self._stood = facts, float(np.nansum((np.where(np.isfinite(left), left, facts.finished_s) - arrived)[stops]))
 
     def between(self, kind: str, before: int, after: int) -> float:
         """Return the running time from one call to another [s]; NaN where it is not known."""
         values = self._of[kind]
         return float(values[after] - (values[before] if before != START else 0.0)) if after != START else 0.0
+
+    def to_end(self, before: int) -> dict[str, float]:
+        """Return the running times from a call to the end of the run [s], by kind."""
+        facts = self._facts
+        if before != START and facts.planned.route_m - facts.calls[before].at_m < AT_END_M:
+            return dict.fromkeys(KINDS, 0.0)
+        end = np.array([facts.planned.route_m])
+        alone = {name: float(getattr(facts.alone, name).until(end)[0]) for name in ("shortest", "limited", "recorded")}
+        alone["recorded"] += facts.held_until(facts.finished_s)
+        whole = alone | {"actual": facts.finished_s - facts.entered_s - self._stood}
+        return {kind: whole[kind] - (float(self._of[kind][before]) if before != START else 0.0) for kind in KINDS}
 
 
 def timed_events(facts: TrainFacts) -> Iterator[Event]:
@@ -169,30 +200,70 @@ def timed_events(facts: TrainFacts) -> Iterator[Event]:
             yield Event(k, "departure", departure, call.departure_s)
 
 
-def chain_of(facts: TrainFacts, inherited: Mapping[str, float]) -> Chain:
-    """Return the chain of a train; `inherited` are the origins of the delay at the end of the run that it comes from [s]."""
-    events = list(timed_events(facts))
+def chain_of(facts: TrainFacts, before: Sequence[Before] = ()) -> Chain:
+    """Return the chain of a train; `before` are the runs that it was before, that which ends last at the end."""
+    running = RunningAt(facts)
+    is_plain = not facts.has_plan and all(each.chain.is_plain for each in before)
+    times = ruled(_begin(facts, before), *_stages(facts, running))
     start = Event(START, "departure", facts.due_s, facts.entered_s)
-    late = facts.entered_s - facts.due_s if np.isfinite(facts.entered_s) else 0.0
-    lateness: Lateness | None = start_lateness(late, _origins_of_start(late, inherited))
-    assert lateness is not None
-    chain, running, before = Chain(lateness), RunningAt(facts), start
-    for event in events:
-        link = _link(facts, running, (before, event), lateness)
-        chain.links.append(link)
-        before, lateness = event, link.lateness
-    return Chain(chain.start, chain.links, _spare(facts, running, chain.links))
+    first, lateness = start, before[-1].chain.end if before else ON_TIME
+    chain = Chain(times, is_plain, lateness)
+    for event in timed_events(facts):
+        found = None
+        if np.isfinite(event.actual_s):
+            late = (times.left_s if event.kind == "departure" else times.arrived_s)[event.call] - event.planned_s
+            if is_plain:  # flat out on its recorded voltages is how it ran
+                late = np.append(late[:-1], event.actual_s - event.planned_s)
+            found = lateness = split(event.actual_s - event.planned_s, late, lateness.origins)
+        chain.links.append(_link(facts, running, (first, event), found))
+        first = event
+    return replace(chain, spare=_spare(facts, running, chain.links))
 
 
-def _origins_of_start(late_s: float, inherited: Mapping[str, float]) -> dict[str, float]:
-    """Return why a run starts late [s]: by what the train brings along, the rest by its turn-round."""
-    brought = sum(inherited.values())
-    share = min(1.0, max(late_s, 0.0) / brought) if brought > 0.0 else 0.0
-    origins = {name: share * value for name, value in inherited.items()}
-    return origins | {"dwell": origins.get("dwell", 0.0) + max(late_s, 0.0) - share * brought}
+def _begin(facts: TrainFacts, before: Sequence[Before]) -> Floats:
+    """Return when a run begins, by chain [s]: not before its planned start, and when all that become it are ready."""
+    if not before:
+        begin = np.full(len(RUNNING), facts.entered_s)
+        begin[0] = min(begin[0], facts.planned.start_s)
+        return begin
+    ready = [each.chain.ruled.finished_s + np.append(_planned_turn(each, facts), [each.turn_s] * 3) for each in before]
+    return np.asarray(np.maximum(np.max(ready, axis=0), facts.planned.start_s))
 
 
-def _link(facts: TrainFacts, running: RunningAt, ends: tuple[Event, Event], before: Lateness | None) -> Link:
+def _planned_turn(before: Before, facts: TrainFacts) -> float:
+    """Return the shortest turn-round, as far as the timetable plans it [s]."""
+    last = before.facts.calls[-1] if before.facts.calls else None
+    if last is None or before.facts.planned.route_m - last.at_m >= AT_END_M:
+        return before.turn_s
+    ends = last.planned_departure_s
+    if ends is None and last.planned_arrival_s is not None:
+        ends = last.planned_arrival_s + (least_dwell(before.facts, len(before.facts.calls) - 1) if last.kind == "stop" else 0.0)
+    if ends is None:
+        return before.turn_s
+    first = facts.calls[0] if facts.calls else None
+    begins = facts.planned.start_s
+    if first is not None and first.kind == "stop" and first.at_m < AT_END_M and first.planned_departure_s is not None:
+        begins = max(begins, first.planned_departure_s)
+    return min(before.turn_s, max(begins - ends, 0.0))
+
+
+def _stages(facts: TrainFacts, running: RunningAt) -> tuple[list[Stage], Floats]:
+    """Return the calls as the rules see them, and the running time behind the last one by chain [s]."""
+    stages = []
+    for k, call in enumerate(facts.calls):
+        times = filled({kind: running.between(kind, k - 1, k) for kind in KINDS}, facts.has_plan)
+        dwell = None
+        if call.kind == "stop":
+            least = least_dwell(facts, k)
+            arrival, departure = call.planned_arrival_s, call.planned_departure_s
+            planned = least if arrival is None or departure is None else min(least, max(departure - arrival, 0.0))
+            dwell = np.array([planned, least, least, least])
+        stages.append(Stage(np.array([times[kind] for kind in RUNNING]), dwell, call.planned_departure_s))
+    rest = filled(running.to_end(len(stages) - 1), facts.has_plan) if facts.is_finished else dict.fromkeys(KINDS, np.nan)
+    return stages, np.array([rest[kind] for kind in RUNNING])
+
+
+def _link(facts: TrainFacts, running: RunningAt, ends: tuple[Event, Event], lateness: Lateness | None) -> Link:
     first, event = ends
     dwells = [
         k for k, call in enumerate(facts.calls) if call.kind == "stop" and first.order <= 2 * k and 2 * k + 1 <= event.order
@@ -200,26 +271,22 @@ def _link(facts: TrainFacts, running: RunningAt, ends: tuple[Event, Event], befo
     from_m = facts.calls[first.call].at_m if first.call != START else 0.0
     moves = facts.calls[event.call].at_m - from_m >= AT_END_M
     whole = event.planned_s - first.planned_s
-    planned_dwell = sum(_least_dwell(facts, k) for k in dwells) if moves else whole
-    planned = whole - planned_dwell
-    times = {kind: running.between(kind, first.call, event.call) for kind in ("shortest", "limited", "recorded", "actual")}
-    elapsed = lateness = None
-    if np.isfinite(event.actual_s) and before is not None:
-        dwell = event.actual_s - first.actual_s - times["actual"]
-        elapsed = Elapsed(planned, *_filled(times, facts.has_plan), planned_dwell, dwell)
-        lateness = carry_on(before, elapsed)
-    return Link(first, event, elapsed, lateness, times["shortest"], times["limited"], times["recorded"], planned, moves)
+    planned = whole - sum(least_dwell(facts, k) for k in dwells) if moves else 0.0
+    times = {kind: running.between(kind, first.call, event.call) for kind in KINDS}
+    return Link(first, event, lateness, times["shortest"], times["limited"], times["recorded"], times["actual"], planned, moves)
 
 
-def _filled(times: Mapping[str, float], has_plan: bool) -> tuple[float, float, float, float]:
-    """Return shortest, limited, recorded and actual running time [s]; where a train alone is stuck, the next one counts."""
+def filled(times: Mapping[str, float], has_plan: bool) -> dict[str, float]:
+    """Return running times [s] where a train alone that is stuck has the next ones; without a plan it is driven flat out."""
     actual = times["actual"]
-    recorded = times["recorded"] if has_plan and np.isfinite(times["recorded"]) else actual  # flat out: no loss by driving
+    recorded = times["recorded"] if has_plan and np.isfinite(times["recorded"]) else actual
     limited = times["limited"] if np.isfinite(times["limited"]) else recorded
-    return times["shortest"] if np.isfinite(times["shortest"]) else limited, limited, recorded, actual
+    shortest = times["shortest"] if np.isfinite(times["shortest"]) else limited
+    return {"shortest": shortest, "limited": limited, "recorded": recorded, "actual": actual}
 
 
-def _least_dwell(facts: TrainFacts, k: int) -> float:
+def least_dwell(facts: TrainFacts, k: int) -> float:
+    """Return the shortest time at a call [s]; none where a run begins."""
     return facts.planned.calls[k].call.min_dwell_s if facts.calls[k].at_m >= AT_END_M else 0.0
 
 
@@ -238,7 +305,7 @@ def _spare(facts: TrainFacts, running: RunningAt, links: list[Link]) -> Floats:
             spare[n] = links[n].event.planned_s - now
         if call.kind != "stop":
             continue
-        now += _least_dwell(facts, k)
+        now += least_dwell(facts, k)
         if call.planned_departure_s is not None:
             if (n := timed.get(2 * k + 1)) is not None and call.planned_departure_s < now:
                 spare[n] = call.planned_departure_s - now

@@ -16,7 +16,7 @@ FEASIBLE: Final = "feasible"
 INFEASIBLE: Final = "infeasible"
 NOT_FINISHED: Final = "not finished"
 NOT_JUDGED: Final = "not judged"
-"""Verdicts on trains; not judged: nothing of its run lies within the time that counts."""
+"""Verdicts on trains; not judged: it has no planned time, or nothing of its run lies within the time that counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +162,8 @@ class Judgement:
     trains, delays, sections, lost
         By train, in the order of their identifiers, and then in the order of the run.
     verdict, reserve_left_s
-        Of the timetable: feasible if it is for every train; the least reserve that a train has left [s], NaN without one.
+        Of the timetable: feasible if it is for every train, not judged if no train came to a call with a planned time within
+        the time that counts; the least reserve that a train has left [s], NaN without one.
     tolerance_s
         A train is late if it is later than this [s].
     warnings
@@ -174,7 +175,7 @@ class Judgement:
     delays: tuple[CallDelay, ...]
     sections: tuple[SectionVerdict, ...]
     lost: tuple[LostTime, ...]
-    verdict: Literal["feasible", "infeasible"]
+    verdict: Literal["feasible", "infeasible", "not judged"]
     reserve_left_s: float
     tolerance_s: float
     warnings: tuple[Problem, ...] = ()

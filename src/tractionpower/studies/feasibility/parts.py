@@ -1,51 +1,77 @@
-"""How a delay is split by cause: from one timed call to the next, reserve absorbs new losses first, then knock-on."""
+"""How a delay is split by cause: chains of calls that differ in one thing, each later than the one before.
+
+All chains follow the same rules: a train leaves a stop when its shortest dwell is over, not before its planned departure;
+passes do not hold it; it becomes another one when the turn-round is over. They differ in the running times, the first one in
+its dwells. What one is later than the one before is the share of its cause in the delay, wherever it arose; what the timetable
+has to spare recovers every chain by the rules themselves.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-LOSSES = ("dwell", "driving", "current_limit", "voltage", "timetable")
-"""New losses of a section, in the order in which its reserve absorbs them."""
+import numpy as np
+from numpy.typing import NDArray
 
-ORIGINS = ("timetable", "current_limit", "voltage", "dwell", "driving")
-"""Where seconds of a delay first arise."""
+Floats = NDArray[np.float64]
+
+ORIGINS = ("timetable", "dwell", "current_limit", "voltage", "driving")
+"""Where seconds of a delay first arise: by what each chain is later than the one before; the last one is the run itself."""
+
+RUNNING = ("shortest", "shortest", "limited", "recorded")
+"""Running times of the chains that are computed by the rules."""
 
 
 @dataclass(frozen=True, slots=True)
-class Elapsed:
-    """What lies between two timed calls [s].
+class Stage:
+    """A call as the rules see it.
 
     Attributes
     ----------
-    planned, shortest, limited, recorded, actual
-        Running times: of the timetable, alone at nominal voltage, the same with current limits, the same on the recorded
-        voltages, and with the network.
-    planned_dwell, dwell
-        Time at stops by the timetable, and with the network.
+    running_s
+        Running time from the call before, or from the start of the run, by `RUNNING` [s]; shape (chains,).
+    dwell_s
+        Shortest dwell by chain [s]; None: it does not stop.
+    departure_s
+        Before when it does not leave [s]; None: the timetable has no time.
     """
 
-    planned: float
-    shortest: float
-    limited: float
-    recorded: float
-    actual: float
-    planned_dwell: float = 0.0
-    dwell: float = 0.0
+    running_s: Floats
+    dwell_s: Floats | None
+    departure_s: float | None = None
 
-    def losses(self) -> dict[str, float]:
-        """Return the new losses, negative ones being gains [s]."""
-        return {
-            "dwell": self.dwell - self.planned_dwell,
-            "driving": self.actual - self.recorded,
-            "current_limit": self.limited - self.shortest,
-            "voltage": self.recorded - self.limited,
-            "timetable": max(0.0, self.shortest - self.planned),
-        }
 
-    @property
-    def reserve(self) -> float:
-        """What the timetable gives beyond the shortest running time [s], 0 if it gives less."""
-        return max(0.0, self.planned - self.shortest)
+@dataclass(frozen=True, eq=False)
+class Ruled:
+    """Times of the chains by the rules [s]: arrival and departure by call and chain, and the end of the run by chain."""
+
+    arrived_s: Floats
+    left_s: Floats
+    finished_s: Floats
+
+
+def ruled(begin_s: Floats, stages: Sequence[Stage], rest_s: Floats) -> Ruled:
+    """Return the times of the chains.
+
+    Parameters
+    ----------
+    begin_s
+        When the run begins, by chain [s].
+    stages
+        Its calls.
+    rest_s
+        Running time from the last call to the end of the run, by chain [s].
+    """
+    now, arrived, left = begin_s, np.zeros((len(stages), len(begin_s))), np.zeros((len(stages), len(begin_s)))
+    for k, stage in enumerate(stages):
+        now = arrived[k] = now + stage.running_s
+        if stage.dwell_s is not None:
+            now = now + stage.dwell_s
+            if stage.departure_s is not None:
+                now = np.maximum(now, stage.departure_s)
+        left[k] = now
+    return Ruled(arrived, left, now + rest_s)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +83,7 @@ class Lateness:
     late_s
         Computed less planned time [s]; negative is early.
     parts
-        Parts of the delay [s]: ``knock_on`` and `LOSSES`.
+        Parts of the delay [s]: ``knock_on``, and by `ORIGINS` what is new since the call before.
     origins
         The delay by `ORIGINS` [s], knock-on followed back to where it first arose.
     """
@@ -72,31 +98,26 @@ class Lateness:
         return max(self.late_s, 0.0)
 
 
-def start_lateness(late_s: float, origins: dict[str, float]) -> Lateness:
-    """Return the lateness with which a run starts; `origins` [s] need not add up, they are scaled."""
-    delay, total = max(late_s, 0.0), sum(origins.values())
-    share = {name: origins.get(name, 0.0) / total if total > 0.0 else float(name == "dwell") for name in ORIGINS}
-    parts = dict.fromkeys(("knock_on", *LOSSES), 0.0) | {"knock_on": delay}
-    return Lateness(late_s, parts, {name: delay * part for name, part in share.items()})
+ON_TIME = Lateness(0.0, dict.fromkeys(("knock_on", *ORIGINS), 0.0), dict.fromkeys(ORIGINS, 0.0))
+"""Before a train has been anywhere."""
 
 
-def carry_on(before: Lateness, elapsed: Elapsed) -> Lateness:
-    """Return the lateness at the next timed call.
+def split(late_s: float, ruled_late_s: Floats, before: Mapping[str, float]) -> Lateness:
+    """Return the lateness at a timed call with its parts.
 
-    What is absorbed is the reserve of the section, the time by which the train was early at its start, and what it gains:
-    on voltages above the nominal one, or by a shorter dwell. It absorbs the losses of the section in the order of `LOSSES`;
-    what is left of it recovers knock-on, of every origin the same share.
+    Parameters
+    ----------
+    late_s
+        How late the train is [s]; negative is early.
+    ruled_late_s
+        How late it is in the chains by the rules [s]; one that is later than the next one counts as that: higher voltages
+        than the nominal one make up for a timetable that is too tight.
+    before
+        Its delay by `ORIGINS` at the call before [s].
     """
-    losses = elapsed.losses()
-    gained = -sum(min(loss, 0.0) for loss in losses.values())
-    absorber = elapsed.reserve + max(-before.late_s, 0.0) + gained
-    parts = {}
-    for name in LOSSES:
-        absorbed = min(absorber, max(losses[name], 0.0))
-        parts[name], absorber = max(losses[name], 0.0) - absorbed, absorber - absorbed
-    brought = before.delay_s
-    knock_on = max(brought - absorber, 0.0)
-    kept = knock_on / brought if brought > 0.0 else 0.0
-    origins = {name: kept * before.origins[name] + parts[name] for name in ORIGINS}
-    late = sum(parts.values()) + knock_on
-    return Lateness(late if late > 0.0 else min(brought - absorber, 0.0), {"knock_on": knock_on, **parts}, origins)
+    delays = np.maximum(np.append(ruled_late_s, late_s), 0.0)
+    delays = np.minimum.accumulate(delays[::-1])[::-1]
+    origins = dict(zip(ORIGINS, np.diff(delays, prepend=0.0).tolist(), strict=True))
+    new = {name: max(origins[name] - before[name], 0.0) for name in ORIGINS}
+    knock_on = max(float(delays[-1]) - sum(new.values()), 0.0)
+    return Lateness(late_s, {"knock_on": knock_on, **new}, origins)

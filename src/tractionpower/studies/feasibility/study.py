@@ -23,9 +23,8 @@ from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter, RunWriter
 from tractionpower.studies.feasibility.alone import AloneTimes, run_all_alone
 from tractionpower.studies.feasibility.areas import Areas
-from tractionpower.studies.feasibility.chain import Chain, TrainFacts, chain_of
-from tractionpower.studies.feasibility.judgement import NAN, Judgement
-from tractionpower.studies.feasibility.lost import loss_profile
+from tractionpower.studies.feasibility.chain import Before, Chain, TrainFacts, chain_of
+from tractionpower.studies.feasibility.judgement import FEASIBLE, INFEASIBLE, NAN, NOT_JUDGED, Judgement
 from tractionpower.studies.feasibility.recording import Recording
 from tractionpower.studies.feasibility.tables import feasibility_notes, key_figures, write_tables
 from tractionpower.studies.feasibility.verdicts import Judged, Span, judge_train
@@ -116,10 +115,7 @@ def judge_outcome(scenario: Scenario, run: Run, done: tuple[Outcome, Recording],
     clock = scenario.clock
     span = Span(clock.start + (clock.warm_up or 0.0), float(outcome.run["end_s"]), tolerance_s)
     areas, useful = Areas(scenario), _useful_voltages(outcome)
-    judged = [
-        judge_train(train, chains[train.name], loss_profile(train, areas, span.from_s), span, useful.get(train.name, (NAN, NAN)))
-        for train in facts
-    ]
+    judged = [judge_train(train, chains[train.name], areas, span, useful.get(train.name, (NAN, NAN))) for train in facts]
     return _put_together(scenario, (outcome, judged), writer, tolerance_s, _warnings(facts))
 
 
@@ -142,7 +138,8 @@ def _put_together(
     write_tables(writer, delays, sections, lost)
     reserve = min((train.reserve_left_s for train in trains if np.isfinite(train.reserve_left_s)), default=NAN)
     holds = all(train.holds for train in trains)
-    verdict: Any = "feasible" if holds else "infeasible"
+    is_judged = any(np.isfinite(row.delay_s) for row in delays)
+    verdict: Any = INFEASIBLE if not holds else FEASIBLE if is_judged else NOT_JUDGED
     overall = {"verdict": verdict, "reserve_left_s": reserve, "tolerance_s": tolerance_s}
     figures = [*outcome.key_figures, *key_figures(trains, lost, reserve)]
     said = {**outcome.run, "input_hash": scenario.input_hash, "feasibility": feasibility_notes(trains, lost, overall)}
@@ -181,15 +178,17 @@ def _links(scenario: Scenario, movement: Movement) -> list[Link]:
 
 
 def _chains(links: Sequence[Link], facts: Sequence[TrainFacts]) -> dict[str, Chain]:
-    """Return the chains of all trains by name; a run that becomes another one hands its delay on, of several the last."""
+    """Return the chains of all trains by name; a run that becomes another one hands its chains on."""
     known, chains = {train.name: train for train in facts}, dict[str, Chain]()
     ordered = sorted(links, key=lambda link: (np.nan_to_num(known[link.first].finished_s), link.first))
-    before = {link.then: link.first for link in ordered}
+    before: dict[str, list[Link]] = {}
+    for link in ordered:
+        before.setdefault(link.then, []).append(link)
 
     def find(name: str) -> Chain:
         if name not in chains:
-            earlier = before.get(name)
-            chains[name] = chain_of(known[name], {} if earlier is None else find(earlier).end.origins)
+            earlier = [Before(known[link.first], find(link.first), link.turn_s) for link in before.get(name, ())]
+            chains[name] = chain_of(known[name], earlier)
         return chains[name]
 
     return {train.name: find(train.name) for train in facts}

@@ -24,6 +24,9 @@ from tractionpower.studies.feasibility.judgement import (
 
 Row = CallDelay | SectionVerdict | LostTime
 
+NOTICED_S = 0.05
+"""A train that loses less in an area is not counted there [s]."""
+
 
 def write_tables(
     writer: Writer, delays: Sequence[CallDelay], sections: Sequence[SectionVerdict], lost: Sequence[LostTime]
@@ -62,8 +65,9 @@ def feasibility_notes(trains: Sequence[TrainVerdict], lost: Sequence[LostTime], 
 
 
 def _first(late: Sequence[TrainVerdict]) -> dict[str, Any] | None:
-    """Return the train that is latest; one that does not come counts before those that do."""
-    worst = max(late, key=lambda train: (train.verdict == NOT_FINISHED, np.nan_to_num(train.late_s)), default=None)
+    """Return the train that is latest, of equal ones the first by name; one that does not come counts before those that do."""
+    order = sorted(late, key=lambda train: (train.verdict != NOT_FINISHED, -np.nan_to_num(train.late_s), train.train))
+    worst = order[0] if order else None
     if worst is None:
         return None
     return {
@@ -77,15 +81,17 @@ def _first(late: Sequence[TrainVerdict]) -> dict[str, Any] | None:
 
 
 def _lost_by_area(lost: Sequence[LostTime]) -> list[dict[str, Any]]:
-    """Return seconds lost by area, gains left out, and how many trains lose there; the worst area first."""
-    sums: dict[str, float] = {}
-    trains: dict[str, set[str]] = {}
+    """Return seconds lost by area, gains left out, and how many trains lose there noticeably; the worst area first."""
+    sums: dict[str, dict[str, float]] = {}
     for row in lost:
         if row.lost_s > 0.0:
-            sums[row.area] = sums.get(row.area, 0.0) + row.lost_s
-            trains.setdefault(row.area, set()).add(row.train)
-    order = sorted(sums, key=lambda area: (-sums[area], area))
-    return [{"area": area, "lost_s": sums[area], "trains": len(trains[area])} for area in order]
+            trains = sums.setdefault(row.area, {})
+            trains[row.train] = trains.get(row.train, 0.0) + row.lost_s
+    rows = [
+        {"area": area, "lost_s": math.fsum(trains.values()), "trains": sum(s >= NOTICED_S for s in trains.values())}
+        for area, trains in sums.items()
+    ]
+    return sorted(rows, key=lambda row: (-row["lost_s"], row["area"]))
 
 
 def key_figures(trains: Sequence[TrainVerdict], lost: Sequence[LostTime], reserve_left_s: float) -> list[dict[str, Any]]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tractionpower.studies.feasibility.areas import Areas
 from tractionpower.studies.feasibility.chain import START, Chain, Link, TrainFacts
 from tractionpower.studies.feasibility.judgement import (
     FEASIBLE,
@@ -19,7 +21,7 @@ from tractionpower.studies.feasibility.judgement import (
     TrainVerdict,
     Verdict,
 )
-from tractionpower.studies.feasibility.lost import LossProfile, lost_times
+from tractionpower.studies.feasibility.lost import LossProfile, loss_profile, lost_times
 from tractionpower.studies.feasibility.words import Story, why
 
 NOT_REACHED = "not_reached"
@@ -45,13 +47,13 @@ class Judged:
     lost: list[LostTime]
 
 
-def judge_train(facts: TrainFacts, chain: Chain, profile: LossProfile, span: Span, useful_v: tuple[float, float]) -> Judged:
+def judge_train(facts: TrainFacts, chain: Chain, areas: Areas, span: Span, useful_v: tuple[float, float]) -> Judged:
     """Return what is found of a train.
 
     Parameters
     ----------
-    facts, chain, profile
-        What is known of it, its timed calls, and where it loses seconds to low voltage.
+    facts, chain, areas
+        What is known of it, its timed calls, and the areas in which it may lose seconds to low voltage.
     span
         The time that counts.
     useful_v
@@ -59,6 +61,9 @@ def judge_train(facts: TrainFacts, chain: Chain, profile: LossProfile, span: Spa
     """
     counted = [n for n, link in enumerate(chain.links) if _counts(link, span)]
     links = [chain.links[n] for n in counted]
+    profile = loss_profile(facts, areas, -np.inf)  # a delay that counts may have arisen before
+    span = replace(span, from_s=_counts_from(links, span))
+    lost = loss_profile(facts, areas, span.from_s)
     delays = [_delay(facts, link, span) for link in links]
     sections = [_section(facts, link, profile) for link in links if link.moves]
     verdict = _verdict(facts, chain, counted, profile, span)
@@ -69,10 +74,16 @@ def judge_train(facts: TrainFacts, chain: Chain, profile: LossProfile, span: Spa
         running_time_ratio=ratio,
         mean_useful_voltage_current_weighted_v=useful_v[0],
         mean_useful_voltage_time_mean_v=useful_v[1],
-        lost_voltage_s=float(profile.lost_s.sum()),
-        lost_area=profile.worst_area(),
+        lost_voltage_s=float(lost.lost_s.sum()),
+        lost_area=lost.worst_area(),
     )
-    return Judged(verdict, delays, sections, list(lost_times(facts.name, profile)))
+    return Judged(verdict, delays, sections, list(lost_times(facts.name, lost)))
+
+
+def _counts_from(links: Sequence[Link], span: Span) -> float:
+    """Return from when on the seconds of a train count [s]: a section counts as a whole if its end does."""
+    begins = [link.before.actual_s for link in links[:1] if np.isfinite(link.before.actual_s)]
+    return min([span.from_s, *begins])
 
 
 def _counts(link: Link, span: Span) -> bool:
@@ -105,7 +116,6 @@ def _section(facts: TrainFacts, link: Link, profile: LossProfile) -> SectionVerd
     from_m = facts.calls[first.call].at_m if first.call != START else 0.0
     to_m = facts.calls[event.call].at_m
     track, km, area = profile.within(from_m, to_m).worst()
-    actual = link.elapsed.actual if link.elapsed is not None else NAN
     return SectionVerdict(
         facts.name,
         facts.calls[first.call].station if first.call != START else "",
@@ -115,8 +125,8 @@ def _section(facts: TrainFacts, link: Link, profile: LossProfile) -> SectionVerd
         link.planned_s,
         link.shortest_s,
         link.limited_s,
-        link.recorded_s if link.elapsed is not None else NAN,
-        actual,
+        link.recorded_s if link.lateness is not None else NAN,
+        link.actual_s if link.lateness is not None else NAN,
         track,
         km,
         area,
@@ -153,7 +163,7 @@ def _verdict(facts: TrainFacts, chain: Chain, counted: list[int], profile: LossP
         verdict = NOT_FINISHED
     elif worst is not None and worst.lateness is not None and worst.lateness.late_s > span.tolerance_s:
         verdict = INFEASIBLE
-    elif not len(facts.trace.rows[facts.trace.rows["time_s"] >= span.from_s - 1e-9]):
+    elif not chain.links or not len(facts.trace.rows[facts.trace.rows["time_s"] >= span.from_s - 1e-9]):
         verdict = NOT_JUDGED
     story = Story(
         facts, chain, worst, missing, profile, span.until_s, verdict, spare, chain.links[at] if at is not None else None

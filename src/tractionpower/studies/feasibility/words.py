@@ -17,7 +17,7 @@ TOLD_S = 0.5
 CAUSES = {
     "current_limit": "{s:.0f} s to train current limits",
     "driving": "{s:.0f} s to driving that is not flat out",
-    "dwell": "{s:.0f} s at stops",
+    "dwell": "{s:.0f} s at stops and turn-rounds",
     "timetable": "{s:.0f} s to a timetable that gives too little time",
 }
 
@@ -68,13 +68,13 @@ class Story:
 def why(story: Story) -> str:
     """Return the verdict in a sentence."""
     if story.verdict == NOT_JUDGED:
+        if not story.chain.links:
+            return f"has no call with a planned time: no verdict on delays; {_running(story)}"
         return "nothing of its run lies within the time that counts"
     if story.verdict == INFEASIBLE and story.worst is not None:
         return _late(story, story.worst)
     if story.verdict != FEASIBLE:
         return _not_there(story)
-    if not story.chain.links:
-        return f"has no call with a planned time: no verdict on delays; {_running(story)}"
     words = "on time"
     if np.isfinite(story.spare_s):
         words += f", with {story.spare_s:.0f} s of reserve left at {story.reserve_at}"
@@ -100,15 +100,21 @@ def _part(story: Story, worst: Link, name: str, seconds: float) -> str:
     words, stretch, area = f"{seconds:.0f} s lost to low voltage", profile.stretch(), profile.worst_area()
     if stretch is not None:
         words += f" between km {stretch[0]:.0f} and {stretch[1]:.0f}"
-    return f"{words} (area {area})" if area else words
+    if not area:
+        return words
+    whole = float(np.maximum(profile.lost_s, 0.0).sum())
+    more = f"; of {whole:.0f} s lost there its reserve takes up the rest" if round(whole) > round(seconds) else ""
+    return f"{words} (area {area}{more})"
 
 
 def _where_lost(story: Story, worst: Link) -> LossProfile:
-    """Return the losses on the way on which the delay by low voltage at a call arose."""
+    """Return the losses on the way on which the delay by low voltage at a call arose: since it last left a stop without one."""
     links = story.chain.links
     last = links.index(worst)
     first = last
-    while first > 0 and (before := links[first - 1].lateness) is not None and before.origins["voltage"] > 0.0:
+    while first > 0 and (before := links[first - 1]).lateness is not None:
+        if before.event.kind == "departure" and not before.lateness.origins["voltage"] > 0.0:
+            break
         first -= 1
     begin = links[first].before.call
     calls = story.facts.calls

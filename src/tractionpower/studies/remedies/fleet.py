@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from tractionpower.model.scenario import Scenario
+from tractionpower.model.services import DAY_BEFORE
 from tractionpower.model.timetable import Call, Service, Timetable, TrainRun
 
 
@@ -46,7 +47,8 @@ def declared_of(scenario: Scenario) -> dict[str, Declared]:
             known[trip.id] = Declared(trip.id, f"timetable.trains[{trip.id}]", trip, (runs[trip.id],))
     for service in sorted(scenario.timetable.services, key=lambda service: -len(service.id)):  # `S 1` before `S`
         own = tuple(run for name, run in runs.items() if name not in known and name.startswith(f"{service.id} "))
-        item = Declared(service.id, f"timetable.services[{service.id}]", service, own)
+        of_day = tuple(run for run in own if not run.id.endswith(DAY_BEFORE))  # those of the day before are no further ones
+        item = Declared(service.id, f"timetable.services[{service.id}]", service, of_day)
         known |= {run.id: item for run in own}
     return known
 

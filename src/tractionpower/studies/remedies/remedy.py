@@ -30,7 +30,7 @@ class Remedy:
     feasible
         Whether no train is late with it.
     verified
-        Whether that was told by a run of the whole study with the network.
+        Whether a run of the whole study with the network has shown that none is.
     lateness_after_s
         Greatest lateness of a train with it [s].
     lost_before_s, lost_after_s

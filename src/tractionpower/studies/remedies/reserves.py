@@ -7,9 +7,13 @@ from collections.abc import Iterator, Sequence
 
 from tractionpower.model.base import format_time
 from tractionpower.model.timetable import Call
+from tractionpower.movement.telling import listed
 from tractionpower.studies.remedies.candidate import Candidate, steps_within
 from tractionpower.studies.remedies.case import Case
 from tractionpower.studies.remedies.fleet import Declared
+
+SHOWN = 12
+"""Names of trains that a proposal shows."""
 
 
 def reserves(case: Case) -> Iterator[Candidate]:
@@ -33,7 +37,7 @@ def reserves(case: Case) -> Iterator[Candidate]:
         return tuple(text for item, delays in profiles.items() for text in later_calls(item, delays, factor))
 
     def tell(size: float) -> str:
-        names = ", ".join(item.name for item in profiles)
+        names = listed((item.name for item in profiles), SHOWN)
         return f"{names} {'is' if len(profiles) == 1 else 'are'} planned up to {size:g} s later, where the time is lost."
 
     subject = next(iter(profiles)).name if len(profiles) == 1 else "late trains"

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from tractionpower.model.remedies import KINDS
 from tractionpower.model.scenario import Scenario
+from tractionpower.movement.telling import listed
 from tractionpower.studies import feasibility
 from tractionpower.studies.feasibility import Judgement
 from tractionpower.studies.remedies.allowance import Allowance
@@ -44,6 +45,9 @@ CTRL_C = "Ctrl-C"
 TRIAL_SHARE = 0.6
 """Share of the wall time in which trial runs begin; the rest is for verifying and sensitivities."""
 
+SHOWN = 12
+"""Names that a note shows."""
+
 FIRSTS, SECONDS = 2, 4
 """Where no change alone suffices: how many of those that come nearest are fixed, and what is tried on top of each."""
 
@@ -77,7 +81,7 @@ def search(
     lateness, judge
         What runs and what judges a scenario, in place of those of the study of feasibility.
     """
-    if judgement.verdict == "feasible":
+    if judgement.verdict != "infeasible":
         return Remedies((), 0, notes=("The timetable holds as it is; nothing was searched.",))
     try:
         work = _Search(
@@ -118,7 +122,8 @@ class _Search:
         self.case = Case(scenario, judgement.tolerance_s, late, delays_by_call(judgement), watcher.culprits(), watcher.peaks)
         self.base = _window_that_shows(scenario, self.case, lateness)
         glance = _glance(scenario, self.base, self.case, lateness)
-        self.trials = Trials(self.base, judgement.tolerance_s, lateness, folder, progress, self.for_trials, glance)
+        self.lateness, self.folder, self.progress = lateness, folder, progress
+        self.trials = self._new_trials(glance)
 
     @property
     def is_whole(self) -> bool:
@@ -127,13 +132,14 @@ class _Search:
 
     def execute(self) -> Remedies:
         """Search, verify, and tell sensitivities; Ctrl-C ends it with what there is."""
-        self._explore(self._affordable(self._candidates()))
-        if not self.interrupted and not self._any_holds():
-            self.room = self.bounds.most_runs - self.trials.tried  # most of the first runs were spared
-            self._explore(self._affordable(self._pairs()))
-        found = self._remedies()
-        if not self.allowance.stopped:
-            found = verify(found, self.scenario, self.judgement, self.judge, self.allowance)
+        found = self._find()
+        if not self.is_whole and not self.interrupted and self._any_holds() and not any(each.feasible for each in found):
+            self.notes.append("What saves the part of the clock around the late trains does not save the whole: searched again.")
+            spent = self.trials.tried
+            self.base, self.attempts = self.scenario, {}
+            self.trials = self._new_trials(None)
+            self.room = self.bounds.most_runs - spent
+            found = self._find()
         rows: tuple[Sensitivity, ...] = ()
         if not self.interrupted and not self.allowance.over:
             rows = sensitivities(self.case, self.base, self.judgement, self.judge, self.allowance)
@@ -143,6 +149,19 @@ class _Search:
             tuple(found), self.trials.tried, rows, tuple(self.notes), self.interrupted, self.allowance.stopped, self.trials.reused
         )
 
+    def _new_trials(self, glance: Glance | None) -> Trials:
+        tolerance_s = self.judgement.tolerance_s
+        return Trials(self.base, tolerance_s, self.lateness, self.folder, self.progress, self.for_trials, glance)
+
+    def _find(self) -> list[Remedy]:
+        """Search in runs of the base, and verify what holds there."""
+        self._explore(self._affordable(self._candidates()))
+        if not self.interrupted and not self._any_holds():
+            self.room = self.bounds.most_runs - self.trials.tried  # most of the first runs were spared
+            self._explore(self._affordable(self._pairs()))
+        found = self._remedies()
+        return found if self.allowance.stopped else verify(found, self.scenario, self.judgement, self.judge, self.allowance)
+
     @property
     def _wall_time(self) -> str:
         return f"its wall time, {self.bounds.wall_time_s:g} s"
@@ -151,10 +170,10 @@ class _Search:
         kinds = [kind for kind in KINDS if kind in self.bounds.kinds]
         missing = missing_alone(self.judgement)
         if missing:
-            names = ", ".join(f"{train} ({seconds:.0f} s)" for train, seconds in missing.items())
+            names = listed([f"{train} ({seconds:.0f} s)" for train, seconds in missing.items()], SHOWN)
             self.notes.append(
-                f"Faster than the trains can run, alone and at nominal voltage: {names}. No change of supply, of other trains"
-                " or of departures helps them; only later planned times were searched."
+                f"Late even alone at nominal voltage, since the timetable gives less than running, dwells and turn-rounds need:"
+                f" {names}. No change of supply or of other trains helps them; only later planned times were searched."
             )
             kinds = [kind for kind in kinds if kind == "reserve"]
         turns = [list(SOURCES[kind](self.case)) for kind in kinds]
@@ -245,7 +264,7 @@ class _Search:
             size = candidate.size(steps)
             remedy = Remedy(
                 candidate.kind, candidate.subject, size, candidate.unit, candidate.tell(size), candidate.change(size),
-                trial.holds, self.is_whole and not (trial.holds or trial.is_partial),
+                trial.holds, False,
                 math.nan if trial.is_partial else trial.worst_s, before, math.nan, round(candidate.cost(size), 6),
             )  # fmt: skip
             rows.append((not trial.holds, remedy.cost if trial.holds else trial.excess_s, len(rows), remedy))
@@ -277,12 +296,13 @@ def delays_by_call(judgement: Judgement) -> dict[tuple[str, str, str], tuple[flo
 
 
 def missing_alone(judgement: Judgement) -> dict[str, float]:
-    """Return by how much the timetable is faster than trains can run alone at nominal voltage, where that makes them late [s]."""
+    """Return how late trains are even alone at nominal voltage: they run, or stop, shorter by plan than they can [s]."""
     missing: dict[str, float] = {}
     for row in judgement.delays:
-        if row.origin_timetable_s > judgement.tolerance_s:
-            missing[row.train] = max(missing.get(row.train, 0.0), row.origin_timetable_s)
-    return missing
+        alone_s = sum(seconds for seconds in (row.origin_timetable_s, row.origin_dwell_s) if math.isfinite(seconds))
+        if alone_s > judgement.tolerance_s:
+            missing[row.train] = max(missing.get(row.train, 0.0), alone_s)
+    return dict(sorted(missing.items(), key=lambda item: (-item[1], item[0])))
 
 
 def _glance(scenario: Scenario, base: Scenario, case: Case, lateness: Lateness) -> Glance | None:

@@ -107,7 +107,7 @@ def _of_substation(station: Substation) -> Iterator[SmallChange]:
         yield _one_more_unit(station, path)
     volts = station.no_load_voltage_v * (1.0 + VOLTAGE_PERCENT / 100.0)
     yield SmallChange(
-        "no_load_voltage", station.id, f"+{VOLTAGE_PERCENT:g} %", (f"{path}.no_load_voltage_v={volts:.6f}",)
+        "no_load_voltage", station.id, f"+{VOLTAGE_PERCENT:g} %", (f"{path}.no_load_voltage_v={round(volts, 6):.10g}",)
     )  # fmt: skip
     least = station.grid_resistance_ohm
     ohm = station.internal_resistance_ohm * (1.0 - VOLTAGE_PERCENT / 100.0)

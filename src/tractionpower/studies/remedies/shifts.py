@@ -40,8 +40,9 @@ def _candidate(case: Case, moved: Sequence[Declared], step: float, most: int) ->
         return tuple(text for item in moved for text in shift_changes(item, size))
 
     def tell(size: float) -> str:
-        with_it = f", and with it {', '.join(item.name for item in moved[1:])}" if len(moved) > 1 else ""
-        return f"{first.words[0].upper()}{first.words[1:]} runs {abs(size):g} s {'later' if size > 0 else 'earlier'}{with_it}."
+        with_it = f"; so do {', '.join(item.name for item in moved[1:])}" if len(moved) > 1 else ""
+        way = "later" if size > 0 else "earlier"
+        return f"{first.words[0].upper()}{first.words[1:]} runs {abs(size):g} s {way}, all its planned times with it{with_it}."
 
     cost = case.bounds.costs.departure_shift
     return Candidate(

@@ -57,18 +57,19 @@ def _judged(remedy: Remedy, scenario: Scenario, before: int, judge: Callable[[Sc
     try:
         after = judge(apply_changes(scenario, remedy.changes))
     except InputError:
-        return replace(remedy, feasible=False, verified=True)
+        return replace(remedy, feasible=False, verified=False)
     worst = max(
         [0.0, *(math.inf if row.verdict == "not finished" else row.late_s for row in after.trains if row.verdict != "not judged")]
     )
     lost = math.fsum(row.lost_s for row in after.lost)
     meet = overlaps(after) > before
+    holds = after.verdict == "feasible" and not meet
     words = f"{remedy.words} But then trains run on one another." if meet else remedy.words
     return replace(
         remedy,
         words=words,
-        feasible=after.verdict == "feasible" and not meet,
-        verified=True,
+        feasible=holds,
+        verified=holds,
         lateness_after_s=worst,
         lost_after_s=lost,
     )
