@@ -27,7 +27,8 @@ def test_all_sheets_are_there_in_order(small):
 
 def test_every_sheet_is_set_up_for_paper(small):
     for sheet in small.worksheets:
-        paper = 8 if sheet.max_column > 16 else 9  # A3, A4
+        width = sum(column.width for column in sheet.column_dimensions.values())
+        paper = 8 if width > 165.0 else 9  # A3, A4
         assert (sheet.page_setup.orientation, int(sheet.page_setup.paperSize)) == ("landscape", paper), sheet.title
         assert sheet.sheet_properties.pageSetUpPr.fitToPage
         assert (int(sheet.page_setup.fitToWidth), int(sheet.page_setup.fitToHeight)) == (1, 0)

@@ -29,8 +29,8 @@ HEADING_LENGTH = 80
 PADDING = 2.5
 """Width of a column beyond that of its texts [characters]."""
 
-WIDE = 16
-"""More columns are printed on A3."""
+WIDE = 165.0
+"""A sheet that is wider than this is printed on A3: on A4 its letters would be too small [characters]."""
 
 LINE_POINTS = 15.0
 """Height of a line of text [pt]."""
@@ -182,7 +182,8 @@ class Page:
     def finish(self) -> None:
         """Set the widths of the columns and the paper, when all is written."""
         sheet = self.sheet
-        sheet.page_setup.paperSize = sheet.PAPERSIZE_A3 if sheet.max_column > WIDE else sheet.PAPERSIZE_A4
+        width = sum(needed + PADDING for needed in self._needed.values())
+        sheet.page_setup.paperSize = sheet.PAPERSIZE_A3 if width > WIDE else sheet.PAPERSIZE_A4
         for number, width in self._needed.items():
             self.sheet.column_dimensions[get_column_letter(number)].width = width + PADDING
         if self.sheet.freeze_panes is None:
