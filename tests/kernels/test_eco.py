@@ -7,14 +7,9 @@ import pytest
 from small_trains import BRAKE, DRIVES, make_trains
 
 from tractionpower.kernels.eco import (
-    BRAKE_N,
-    COLUMNS,
     CONTROLS,
     ECO,
-    FIRST_POWER,
-    FULL_N,
     MODES,
-    SHARES,
     STAGE,
     cost_of,
     follow,
@@ -22,8 +17,8 @@ from tractionpower.kernels.eco import (
     lay_floors,
     lay_slopes,
     sweep,
-    tabulate_drive,
 )
+from tractionpower.kernels.eco_drive import BRAKE_N, COLUMNS, FIRST_POWER, FULL_N, SHARES, tabulate_drive
 from tractionpower.kernels.train_tables import MOVER
 from tractionpower.movement.compile import compile_trains
 

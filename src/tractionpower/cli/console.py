@@ -51,4 +51,4 @@ def warn_of_compilation(kernel: str) -> None:
     from tractionpower.kernels.jit import is_compiled
 
     if not is_compiled(kernel):
-        tell("first run on this machine: compiling the kernels, up to a minute; later starts use the cache")
+        tell("first run on this machine: compiling the kernels, one to two minutes; later starts use the cache")

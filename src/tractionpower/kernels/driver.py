@@ -6,7 +6,7 @@ import numpy as np
 
 from tractionpower.kernels.effort import greatest_effort, look_up
 from tractionpower.kernels.jit import inlined, njit
-from tractionpower.kernels.wayside import HERE_M, additional_resistance, resistance_at
+from tractionpower.kernels.wayside import additional_resistance, resistance_at, value_at
 
 NO_CEILING = 1e-10
 """Share by which a square of a speed may pass a ceiling by rounding."""
@@ -87,15 +87,7 @@ def planned_here(tables, train, mover):
     if mover.v_mps * mover.v_mps > ceiling + NO_CEILING * (1.0 + ceiling):
         p, last = _piece_at(tables, train.first_piece, train.pieces, mover.s_m)
         return 0.0, np.inf, np.inf, p, last
-    points, low, end = tables.points, train.first_cap, train.first_cap + train.caps
-    high = end
-    while high - low > 1:
-        middle = (low + high) // 2
-        if points[middle].x <= mover.s_m + HERE_M:
-            low = middle
-        else:
-            high = middle
-    room, share = points[high].x - mover.s_m if high < end else np.inf, points[low].y
+    share, room = value_at(tables.points, train.first_cap, train.caps, mover.s_m)
     if share == 0.0 and mover.v_mps < CRAWL_MPS:
         return 1.0, room, _time_to_crawl(tables, train, mover), p, last
     return share, room, np.inf, p, last

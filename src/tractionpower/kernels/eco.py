@@ -16,12 +16,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tractionpower.kernels.effort import adhesion_limit, efficiency_at, greatest_effort
+from tractionpower.kernels.eco_drive import BRAKE_N, FIRST_POWER, FULL_N, SHARES, column_at, row_of
 from tractionpower.kernels.jit import inlined, njit
-from tractionpower.kernels.pantograph import auxiliary_current, current_limit
-from tractionpower.kernels.series_motors import choose_notch, lowest_notch, notch_below
-from tractionpower.kernels.traction import permitted_effort, traction
-from tractionpower.kernels.train_tables import INVERTER, SERIES_MOTORS
 from tractionpower.kernels.wayside import additional_resistance
 
 FULL, PART, HOLD, COAST, ELECTRIC, SERVICE = range(6)
@@ -31,13 +27,6 @@ CONTROLS = 6
 
 MODES = 4
 """Greatest effort; holding or some effort; coasting; braking."""
-
-SHARES = 8
-"""Shares of the greatest effort between which the power from the line is taken as linear."""
-
-FULL_N, BRAKE_N, FIRST_POWER = 0, 1, 2
-COLUMNS = FIRST_POWER + SHARES + 1
-"""Columns of a drive over speed: greatest effort, electric brake [N], power from the line at shares of the effort [W]."""
 
 STAGE = np.dtype(
     [
@@ -70,7 +59,6 @@ ECO = np.dtype(
 )
 """What the planner needs of a train."""
 
-_CRAWL_MPS = 0.05
 _LEAST_W = 1e-4
 _DEAR, _STALLED = 30.0, 1e6  # for a square of the speed [J/(kg m2/s2)], and beside that [J/kg]
 _ARRIVING_W = 9.0  # square of the speed at which a train coasts to a stop, at least
@@ -86,75 +74,6 @@ def lay_slopes(tables, k, movers, stages):
         stages[i].constant_n, stages[i].drag = constant, drag
         rate = train.service_mps2 + constant / train.inertia_kg
         stages[i].service_mps2 = max(rate, 0.1 * train.service_mps2)
-
-
-@njit
-def tabulate_drive(tables, k, movers, lines, dv, drive):
-    """Tabulate effort, electric brake and power from the line of train `k` over speed.
-
-    Parameters
-    ----------
-    movers : ndarray of MOVER
-        One record, in which series motors choose their notches.
-    lines : tuple
-        Voltage [V] and largest train current that the line allows [A]; without voltage the train has neither effort nor
-        brake that feeds back.
-    dv : float
-        Speed between rows of `drive` [m/s].
-    drive : ndarray
-        Rows of `COLUMNS` values, filled.
-    """
-    train, mover, u = tables.trains[k], movers[0], lines[0]
-    drive[:] = 0.0
-    if not u > 0.0:
-        return
-    mover.notch, mover.notch_since_s, mover.voltage_v, mover.below = 0, -np.inf, u, -1
-    limit, _ = current_limit(train, u, lines[1])
-    free = max(limit - auxiliary_current(train, u), 0.0)
-    for n in range(drive.shape[0]):
-        v = max(n * dv, _CRAWL_MPS)
-        mover.v_mps = v
-        if train.drive == SERIES_MOTORS:
-            mover.notch = choose_notch(tables, train, mover, 0.0, free)
-        effort, current, _, _ = permitted_effort(tables, train, mover, v, lines)
-        drive[n, FULL_N], drive[n, FIRST_POWER + SHARES] = effort, u * current
-        if v > train.brake_from_mps:
-            drive[n, BRAKE_N] = min(train.brake_n, train.brake_w / v, adhesion_limit(train, v))
-        for share in range(1, SHARES):
-            drive[n, FIRST_POWER + share] = _power_at(tables, train, mover, lines, (v, effort), share / SHARES)
-
-
-@njit
-def _power_at(tables, train, mover, lines, full, share):
-    """Return the power from the line [W] at a share of the full effort: `full` holds speed [m/s] and that effort [N]."""
-    v, effort = full
-    need_w, midpoint = share * effort * v, (v, 0.0, 0.0, v)
-    if need_w <= 0.0:
-        return 0.0
-    if train.drive == INVERTER:
-        greatest, _, _ = greatest_effort(tables, train, mover, v)
-        return need_w / efficiency_at(tables, train, v, share * effort / greatest)
-    held = mover.notch
-    if train.drive == SERIES_MOTORS:
-        mover.notch = lowest_notch(tables, train, mover, held, need_w, midpoint)
-        mover.below = notch_below(tables, train, mover, mover.notch, need_w, midpoint)
-    _, current, _, _, _ = traction(tables, train, mover, need_w, lines, midpoint)
-    mover.notch = held
-    return lines[0] * current
-
-
-@inlined
-def _row(drive, eco, v):
-    """Return the row of a drive below the speed `v`, and the share of the next one."""
-    x = v / eco.dv
-    n = min(int(x), drive.shape[0] - 2)
-    return n, min(x - n, 1.0)
-
-
-@inlined
-def _at(drive, row, column):
-    n, x = row
-    return drive[n, column] + x * (drive[n + 1, column] - drive[n, column])
 
 
 @inlined
@@ -186,10 +105,10 @@ def _led_to(drive, eco, stage, w, share, column):
     after = w
     for _ in range(2):
         v = np.sqrt(max(0.5 * (w + after), 0.0))
-        force = share * _at(drive, _row(drive, eco, v), column) if share != 0.0 else 0.0
+        force = share * column_at(drive, row_of(drive, eco, v), column) if share != 0.0 else 0.0
         after = max(w + factor * (force - _resistance(eco, stage, v)), 0.0)
     v = np.sqrt(0.5 * (w + after))
-    force = share * _at(drive, _row(drive, eco, v), column) if share != 0.0 else 0.0
+    force = share * column_at(drive, row_of(drive, eco, v), column) if share != 0.0 else 0.0
     return w + factor * (force - _resistance(eco, stage, v))
 
 
@@ -214,14 +133,14 @@ def _price(drive, eco, stage, w, after):
     spent = 2.0 * stage.length_m / speeds if speeds > 0.0 else 1e6
     v = 0.5 * speeds
     force = eco.inertia_kg * (after - w) / (2.0 * stage.length_m) + _resistance(eco, stage, np.sqrt(0.5 * (w + after)))
-    row = _row(drive, eco, v)
+    row = row_of(drive, eco, v)
     if force > 0.0:
-        full = _at(drive, row, FULL_N)
+        full = column_at(drive, row, FULL_N)
         x = min(force / full, 1.0) * SHARES if full > 0.0 else 0.0
         n = min(int(x), SHARES - 1)
-        below = _at(drive, row, FIRST_POWER + n)
-        return (below + (x - n) * (_at(drive, row, FIRST_POWER + n + 1) - below)) * spent, spent
-    gained = eco.gain * min(-force, _at(drive, row, BRAKE_N)) * v
+        below = column_at(drive, row, FIRST_POWER + n)
+        return (below + (x - n) * (column_at(drive, row, FIRST_POWER + n + 1) - below)) * spent, spent
+    gained = eco.gain * min(-force, column_at(drive, row, BRAKE_N)) * v
     own = min(gained, eco.own_w)
     return -(own + eco.back * stage.back * (gained - own)) * spent, spent
 
@@ -374,7 +293,7 @@ def cost_of(stages, drives, eco_of, squares, efforts, shares):
         energy, _ = _price(drive, eco, stage, squares[i], squares[i + 1])
         change = eco.inertia_kg * (squares[i + 1] - squares[i]) / (2.0 * stage.length_m)
         efforts[i] = change + _resistance(eco, stage, np.sqrt(0.5 * (squares[i] + squares[i + 1])))
-        full = _at(drive, _row(drive, eco, 0.5 * (np.sqrt(squares[i]) + np.sqrt(squares[i + 1]))), FULL_N)
+        full = column_at(drive, row_of(drive, eco, 0.5 * (np.sqrt(squares[i]) + np.sqrt(squares[i + 1]))), FULL_N)
         shares[i] = 0.0
         if efforts[i] > 0.0:
             shares[i] = efforts[i] / full if full > 0.0 else 1.0

@@ -98,17 +98,24 @@ def resistance_at(train, track, v):
 
 
 @inlined
-def power_off_at(tables, train, mover):
-    """Return what the front may take where it is, one of `POWERED`, `COASTS`, `DARK`, and how far that holds [m]."""
-    points, low, end = tables.points, train.first_off, train.first_off + train.offs
+def value_at(points, first, count, s):
+    """Return what holds at the place `s` [m] by rows that hold from their `x` on, and how far it holds [m]."""
+    low, end = first, first + count
     high = end
     while high - low > 1:
         middle = (low + high) // 2
-        if points[middle].x <= mover.s_m + HERE_M:
+        if points[middle].x <= s + HERE_M:
             low = middle
         else:
             high = middle
-    return int(points[low].y), points[high].x - mover.s_m if high < end else np.inf
+    return points[low].y, points[high].x - s if high < end else np.inf
+
+
+@inlined
+def power_off_at(tables, train, mover):
+    """Return what the front may take where it is, one of `POWERED`, `COASTS`, `DARK`, and how far that holds [m]."""
+    kind, room = value_at(tables.points, train.first_off, train.offs, mover.s_m)
+    return int(kind), room
 
 
 @inlined

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.kernels.eco import (
-    COLUMNS,
     CONTROLS,
     ECO,
     MODES,
@@ -21,8 +20,8 @@ from tractionpower.kernels.eco import (
     lay_floors,
     lay_slopes,
     sweep,
-    tabulate_drive,
 )
+from tractionpower.kernels.eco_drive import COLUMNS, tabulate_drive
 from tractionpower.kernels.train_tables import MOVER, POWERED
 from tractionpower.movement.compile import Movement
 from tractionpower.movement.drives import NO_LIMIT
