@@ -93,7 +93,7 @@ def test_what_would_save_it(book):
     assert (second["subject"], second["saves it"], second["lost after [s]"]) == ("=cmd()", "no", None)
     assert sheet.cell(*next((c.row, c.column) for row in sheet.iter_rows() for c in row if c.value == "=cmd()")).data_type == "s"
     (sensitivity,) = rows_of(sheet, "what is changed")
-    assert sensitivity["change of the seconds lost, all trains [s]"] == -6.2
+    assert sensitivity["change of loss, all trains [s]"] == -6.2
 
 
 def test_a_feasible_timetable_and_a_run_that_was_not_judged(write):

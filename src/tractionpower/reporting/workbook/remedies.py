@@ -26,8 +26,8 @@ _SENSITIVITIES = (
     Column("what is changed", widest=24),
     Column("subject", widest=28),
     Column("by"),
-    Column("change of the seconds lost, all trains [s]", "0.00"),
-    Column("as options of the command line", "beside", 56),
+    Column("as options of the command line", widest=52),
+    Column("change of loss, all trains [s]", "0.00"),
 )
 
 
@@ -83,4 +83,4 @@ def _sensitivities(page: Page, rows: list[dict[str, Any]]) -> None:
 
 def _sensitivity(row: dict[str, Any]) -> tuple[Any, ...]:
     change = " ".join(f"--set '{text}'" for text in row.get("change") or ())
-    return row["kind"].replace("_", " "), row["subject"], row["per"], row["lost_s_change"], change
+    return row["kind"].replace("_", " "), row["subject"], row["per"], change, row["lost_s_change"]
