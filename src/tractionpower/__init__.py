@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from tractionpower.cosimulation.check import check_scenario as check
     from tractionpower.cosimulation.simulate import simulate
     from tractionpower.errors import InputError, OutputError, Problem, TractionPowerError, UsageError
-    from tractionpower.io.conductor_files import change
+    from tractionpower.io.library import change
     from tractionpower.io.scenario_files import load
     from tractionpower.io.scenario_files import save_scenario as save
     from tractionpower.model.scenario import Scenario
@@ -28,7 +28,7 @@ _HOMES = {
     "Scenario": ("model.scenario", "Scenario"),
     "TractionPowerError": ("errors", "TractionPowerError"),
     "UsageError": ("errors", "UsageError"),
-    "change": ("io.conductor_files", "change"),
+    "change": ("io.library", "change"),
     "check": ("cosimulation.check", "check_scenario"),
     "feasibility": ("studies.feasibility.study", "feasibility"),
     "journeys": ("studies.journeys", "journeys"),

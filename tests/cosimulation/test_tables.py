@@ -8,7 +8,7 @@ from coupled import couple, run
 from small_studies import make_scenario
 
 from tractionpower.cosimulation.tables import compile_scenario, coupling_voltage, lay_ways
-from tractionpower.io.conductor_files import change
+from tractionpower.io.library import change
 
 SWITCH = {"connections": [{"from": {"track": "1", "km": 8.0}, "to": {"track": "2", "km": 8.0}}]}
 TWO_LEGS = [{"track": "1", "from_km": 3.0, "to_km": 8.0}, {"track": "2", "from_km": 8.0, "to_km": 14.0}]

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tractionpower.errors import InputError, OutputError
-from tractionpower.io.conductor_files import change, shipped_conductors
+from tractionpower.io.conductor_files import shipped_conductors
+from tractionpower.io.library import change
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.io.scenario_files import load_scenario, read_scenario, save_scenario
 from tractionpower.io.templates import template_texts
@@ -160,7 +161,7 @@ def test_conductors_are_laid_over_the_shipped_ones_and_only_those_in_use_are_kep
     kept = {(row.kind, row.name): row for row in loaded.scenario.conductors}
     assert list(kept) == [("contact_line", "C120-2C"), ("rail", "mine"), ("wire", "Cu100"), ("wire", "L120")]
     assert (kept["wire", "L120"].resistance_ohm_per_km, kept["wire", "L120"].status) == (0.16, "user")
-    assert len(loaded.conductors) == len(shipped_conductors()) + 1
+    assert len(loaded.library.conductors) == len(shipped_conductors()) + 1
     save_scenario(loaded.scenario, tmp_path / "saved")
     assert (tmp_path / "saved" / "conductors.csv").read_text().count("\n") == 3  # the rail and the wire that differs
     assert load_scenario(tmp_path / "saved").scenario == loaded.scenario

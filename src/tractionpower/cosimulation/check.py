@@ -17,11 +17,15 @@ from tractionpower.supply.conductor_checks import check_conductors
 
 def check_scenario(scenario: Scenario) -> list[Problem]:
     """Return every problem of a scenario whose parts are well formed; an empty list if there is none."""
+    return [*check_all_but_movement(scenario), *check_movement(scenario)]
+
+
+def check_all_but_movement(scenario: Scenario) -> list[Problem]:
+    """Return the problems of all but vehicles, trains and the timetable."""
     return [
         *check_line(scenario.line),
         *check_supply(scenario.supply, scenario.line, scenario.limits),
         *check_conductors(scenario.supply, scenario.conductors),
-        *check_movement(scenario),
         *_check_clock(scenario),
         *_check_output(scenario),
         *check_touch(scenario.limits, scenario.supply.system),

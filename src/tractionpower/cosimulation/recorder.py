@@ -34,18 +34,18 @@ from tractionpower.results.trains import calls_table, trains_table
 from tractionpower.supply.characteristics import dissipative_resistance, no_load_voltage
 from tractionpower.supply.compile import SupplyTables
 
-Watch = Callable[[NDArray[np.void]], None]
-"""Called with the rows of trains of some steps, which it must not keep."""
+Watch = Callable[[Array, Buffers, SupplyTables], None]
+"""Called with the starts of some steps [s], their rows, which it must not keep, and the supply in its states then."""
 
 
 class Recorder:
     """Takes the buffers of a run as they fill, writes rows and keeps what the key figures need."""
 
     def __init__(
-        self, scenario: Scenario, compiled: CompiledScenario, state: State, writer: Any, watch: Watch | None = None
+        self, scenario: Scenario, compiled: CompiledScenario, state: State, writer: Any, watches: Sequence[Watch] = ()
     ) -> None:
         supply = compiled.supply
-        self.scenario, self.supply, self.writer, self._watch = scenario, supply, writer, watch
+        self.scenario, self.supply, self.writer, self.watches = scenario, supply, writer, list(watches)
         self.trains = TrainRecorder(scenario, compiled, state)
         self.worst_step = WorstStep(scenario, self.trains.names, self.trains.places.tracks)
         self.rails = RailRecorder(scenario, supply, tuple(self.trains.names), self.trains.places.tracks)
@@ -77,8 +77,8 @@ class Recorder:
         taken = take_rows(buffers, slice(rows))
         self._note(time_s, taken)
         placed = self.trains.add(taken.trains)
-        if self._watch is not None:
-            self._watch(taken.trains)
+        for watch in self.watches:
+            watch(time_s, taken, supply)
         self.worst_step.add(taken, placed, supply)
         self.rails.add_trains(*self._counted(taken.trains, placed))
         written = number % self.every == 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -74,8 +74,8 @@ class Run:
         Takes the rows.
     study
         Identifier of the study, for ``run.json``.
-    watch
-        Called with the rows of trains, records of `TRAIN_ROW`, in every step, whatever is written.
+    watches
+        Called with the rows of every step, whatever is written.
 
     Raises
     ------
@@ -83,7 +83,7 @@ class Run:
         If the scenario has errors; all of them are told.
     """
 
-    def __init__(self, scenario: Scenario, writer: Writer, study: str = "", watch: Watch | None = None) -> None:
+    def __init__(self, scenario: Scenario, writer: Writer, study: str = "", watches: Sequence[Watch] = ()) -> None:
         started = time.perf_counter()
         problems = check_scenario(scenario)
         raise_errors(problems)
@@ -93,7 +93,7 @@ class Run:
         self.steps = step_count(scenario.clock)
         state = start_state(self.compiled)
         self.board = Switchboard(scenario, self.compiled, state)
-        self.recorder = Recorder(scenario, self.compiled, state, writer, watch)
+        self.recorder = Recorder(scenario, self.compiled, state, writer, watches)
         self._closed = False
         self.compile_seconds = time.perf_counter() - started
         self.wall_seconds = 0.0

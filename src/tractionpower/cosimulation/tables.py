@@ -60,7 +60,7 @@ def assemble(scenario: Scenario, movement: Movement, states: Supply) -> Compiled
     entries = entries[movement.tables.trains["waits"][entries] == 0]
     block = BlockTables(
         supply.network, supply.edges, _sources(supply), *_loads(supply), supply.link_table, supply.terms,
-        supply.rail_table, supply.earth_edge, supply.triggers, supply.section_table, clock,
+        supply.rail_table, supply.earth_edge, supply.triggers, supply.section_table, supply.gauge_table, clock,
         movement.tables, fleet, ways, entries,
     )  # fmt: skip
     return CompiledScenario(movement, supply, block)

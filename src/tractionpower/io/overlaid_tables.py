@@ -34,7 +34,7 @@ class OverlaidTable(Generic[Row]):
     word
         What messages call a row.
     keys
-        The two fields that tell rows apart.
+        The fields that tell rows apart.
     overlay
         Lays rows over others and sorts them.
     """
@@ -44,7 +44,7 @@ class OverlaidTable(Generic[Row]):
         model: type[Row],
         name: str,
         word: str,
-        keys: tuple[str, str],
+        keys: tuple[str, ...],
         overlay: Callable[[Sequence[Row], Sequence[Row]], tuple[Row, ...]],
     ) -> None:
         self.model, self.name, self.word, self.keys, self._overlay = model, name, word, keys, overlay

@@ -10,22 +10,24 @@ from typing import Any, TypeVar
 from pydantic import BaseModel
 
 from tractionpower.errors import InputError, Problem
-from tractionpower.io.conductor_files import CONDUCTORS, shipped_conductors
+from tractionpower.io.conductor_files import CONDUCTORS
 from tractionpower.io.csv_files import csv_text
 from tractionpower.io.documents import Reader
 from tractionpower.io.file_names import file_names
 from tractionpower.io.finder import STUDY_FILE, Study, find_study
+from tractionpower.io.library import shipped_library
 from tractionpower.io.limits_files import LIMITS
 from tractionpower.io.overlaid_tables import OverlaidTable, Row
 from tractionpower.io.problems import in_file_order
 from tractionpower.io.provenance import Mark, Provenance
+from tractionpower.io.rating_files import DUTY_CLASSES, RECTIFIER_UNITS
 from tractionpower.io.rolling_stock import RollingStock
 from tractionpower.io.stock_finder import FOLDER
 from tractionpower.io.text_files import Source, relative_label, write_files
 from tractionpower.io.yaml_text import document
 from tractionpower.model.base import FORMAT, format_time
 from tractionpower.model.change import apply_changes
-from tractionpower.model.conductors import Conductor
+from tractionpower.model.library import Library
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import Scenario, StudyFile
 from tractionpower.model.supply import Supply
@@ -39,7 +41,7 @@ LONG_PROFILE = 50
 
 _OF_THE_STUDY = (
     "name", "clock", "day", "coupling", "coupling_voltage_v", "seed", "coast_without_voltage_s", "output",
-    "feasibility", "remedies",
+    "feasibility", "remedies", "sizing", "contingency",
 )  # fmt: skip
 
 
@@ -59,8 +61,8 @@ class LoadedScenario:
         Warnings of the reading.
     origin
         Where the study was found, in words.
-    conductors
-        The whole table of conductors; the scenario holds the rows that it uses.
+    library
+        The whole tables of equipment; the scenario holds the rows that it uses.
     """
 
     scenario: Scenario
@@ -68,18 +70,18 @@ class LoadedScenario:
     folder: Path
     problems: tuple[Problem, ...] = ()
     origin: str = ""
-    conductors: tuple[Conductor, ...] = field(default_factory=shipped_conductors)
+    library: Library = field(default_factory=shipped_library)
     file: Path = Path(STUDY_FILE)
 
     def changed(self, changes: Iterable[str]) -> Scenario:
-        """Return the scenario with changes by path applied; they may name any conductor of the whole table.
+        """Return the scenario with changes by path applied; they may name any row of the library.
 
         Raises
         ------
         InputError
             With all that is wrong with them.
         """
-        return apply_changes(self.scenario, changes, self.conductors)
+        return apply_changes(self.scenario, changes, self.library)
 
 
 def load_scenario(study: str | Path) -> LoadedScenario:
@@ -118,7 +120,7 @@ def read_scenario(study: str | Path) -> tuple[LoadedScenario | None, list[Proble
     if scenario is None:
         return None, problems
     told = tuple(problems)
-    loaded = LoadedScenario(scenario, Provenance(files.root), found.folder, told, found.origin, files.conductors, found.file)
+    loaded = LoadedScenario(scenario, Provenance(files.root), found.folder, told, found.origin, files.library, found.file)
     return loaded, problems
 
 
@@ -145,10 +147,15 @@ def save_scenario(scenario: Scenario, folder: str | Path) -> None:
         study["timetable"] = "timetable.yaml"
         texts["timetable.yaml"] = document(_dump(scenario.timetable))
     texts |= _stock_texts("vehicles", scenario.vehicles) | _stock_texts("trains", scenario.trains)
-    for name, rows in (("limits", LIMITS.text(scenario.limits)), ("conductors", CONDUCTORS.text(scenario.conductors))):
-        if rows:
-            study[name] = f"{name}.csv"
-            texts[f"{name}.csv"] = rows
+    tables: tuple[tuple[OverlaidTable[Any], Any], ...] = (
+        (LIMITS, scenario.limits), (CONDUCTORS, scenario.conductors),
+        (DUTY_CLASSES, scenario.duty_classes), (RECTIFIER_UNITS, scenario.rectifier_units),
+    )  # fmt: skip
+    for table, rows in tables:
+        text = table.text(rows)
+        if text:
+            study[table.name] = f"{table.name}.csv"
+            texts[f"{table.name}.csv"] = text
     own = scenario.model_dump(mode="json", by_alias=True, include=set(_OF_THE_STUDY), exclude_defaults=True)
     # The study file comes last: a folder is a study once everything that it names is there.
     texts[STUDY_FILE] = document({**study, **own})
@@ -183,7 +190,7 @@ class _StudyReader:
     reader: Reader = field(init=False)
     stock: RollingStock = field(init=False)
     root: Mark = field(init=False)
-    conductors: tuple[Conductor, ...] = ()
+    library: Library = field(default_factory=Library)
 
     def __post_init__(self) -> None:
         self.reader = Reader(self.found.folder)
@@ -198,12 +205,14 @@ class _StudyReader:
         supply = self._part("supply", names, Supply)
         timetable = self._part("timetable", names, Timetable) if names.get("timetable") is not None else Timetable()
         self.root.children |= {"trains": self.stock.trains.mark(), "vehicles": self.stock.vehicles.mark()}
-        limits, self.conductors = self._overlaid(LIMITS, names), self._overlaid(CONDUCTORS, names)
+        limits = self._overlaid(LIMITS, names)
+        of_library = (CONDUCTORS, DUTY_CLASSES, RECTIFIER_UNITS)
+        self.library = Library(**{table.name: self._overlaid(table, names) for table in of_library})
         if study is None or line is None or supply is None or timetable is None or self.reader.has_errors:
             return None
         own = {name: getattr(study, name) for name in _OF_THE_STUDY}
         trains, vehicles = self.stock.trains.sorted(), self.stock.vehicles.sorted()
-        tables = {"limits": limits, "conductors": self.conductors}
+        tables = {"limits": limits, **{table.name: getattr(self.library, table.name) for table in of_library}}
         return Scenario(line=line, supply=supply, timetable=timetable, trains=trains, vehicles=vehicles, **tables, **own)
 
     def _study(self, source: Source) -> tuple[dict[str, Any], StudyFile | None]:

@@ -189,3 +189,6 @@ def _record(tables, state, buffers, row):
             buffers.section_v[row, k] = np.nan
         else:
             buffers.section_v[row, k] = work.node_v[section.contact] - work.node_v[section.rail]
+    for k in range(tables.gauges.shape[0]):
+        conductor = work.conductors[tables.gauges[k].conductor]
+        buffers.gauge_a[row, k] = conductor.right_a if tables.gauges[k].right else conductor.left_a

@@ -23,6 +23,9 @@ LOAD_STEP = np.dtype([("time_s", "f8"), ("factor", "f8")])
 SECTION = np.dtype([("contact", "i8"), ("rail", "i8"), ("port", "i8")])
 """A place whose voltage is recorded: two skeleton nodes, or a port in a span (else -1); neither where nothing feeds."""
 
+GAUGE = np.dtype([("conductor", "i8"), ("right", "?")], align=True)
+"""An end of a conductor whose current into it is recorded."""
+
 OVERCURRENT, RAIL_POTENTIAL = 0, 1
 """What a trigger watches: the current of a link, the potential of a node against earth, both regardless of their sign."""
 
@@ -78,6 +81,8 @@ class BlockTables(NamedTuple):
         Thresholds that end a block, record array of `TRIGGER`.
     sections
         Places whose voltage is recorded, record array of `SECTION`.
+    gauges
+        Ends of contact lines and rails whose current is recorded, record array of `GAUGE`.
     clock
         Start [s after midnight], step [s], voltage of the constant-voltage coupling or 0 [V]; shape (3,).
     trains
@@ -99,6 +104,7 @@ class BlockTables(NamedTuple):
     earth: NDArray[np.int64]
     triggers: NDArray[np.void]
     sections: NDArray[np.void]
+    gauges: NDArray[np.void]
     clock: NDArray[np.float64]
     trains: TrainTables
     fleet: NDArray[np.void]
@@ -167,6 +173,7 @@ class Buffers(NamedTuple):
     rail_v: NDArray[np.float64]  # NaN where there is no potential
     earth_a: NDArray[np.float64]  # into earth
     section_v: NDArray[np.float64]
+    gauge_a: NDArray[np.float64]
     trains: NDArray[np.void]  # TRAIN_ROW, one after the other: as many of each step as `steps` says
 
 
@@ -220,7 +227,17 @@ def copy_state(state: State) -> State:
 def new_buffers(tables: BlockTables, rows: int, train_rows: int | None = None) -> Buffers:
     """Return buffers for `rows` steps and `train_rows` rows of trains, at least one for each train; left out: enough for all."""
     sources, loads, trains = len(tables.sources), len(tables.loads), len(tables.fleet)
-    widths = (sources, sources, loads, loads, len(tables.links), len(tables.rails), len(tables.earth), len(tables.sections))
+    widths = (
+        sources,
+        sources,
+        loads,
+        loads,
+        len(tables.links),
+        len(tables.rails),
+        len(tables.earth),
+        len(tables.sections),
+        len(tables.gauges),
+    )
     room = rows * trains if train_rows is None else max(train_rows, trains)
     return Buffers(np.zeros(rows, STEP_RESULT), *(np.zeros((rows, width)) for width in widths), trains=np.zeros(room, TRAIN_ROW))
 

@@ -6,6 +6,7 @@ model validates the result again, so that a changed scenario obeys every rule th
 
 from __future__ import annotations
 
+import copy
 import difflib
 import json
 import re
@@ -15,7 +16,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from tractionpower.errors import InputError, Problem
-from tractionpower.model.conductors import Conductor
+from tractionpower.model.library import KEYS, Library
 from tractionpower.model.scenario import Scenario
 
 # An identifier in brackets may hold dots and equals signs, so the first "=" outside brackets ends the path.
@@ -25,6 +26,9 @@ _WORDS = {"null": None, "~": None, "true": True, "false": False}
 _INTEGER = re.compile(r"[-+]?\d+")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _SHOWN = 12
+
+ALL, ADDED = "[*]", "[+]"
+"""Steps of a path: every item of a list, one more item."""
 
 
 def apply_change(scenario: Scenario, change: str) -> Scenario:
@@ -37,6 +41,7 @@ def apply_change(scenario: Scenario, change: str) -> Scenario:
     change
         ``PATH=VALUE``, for example ``supply.section_cabins[C].state=bypassed``. Items of a list are addressed by their
         ``id``, or by a zero-based index where they have none or no id is a number (``trains[ic].vehicles[0].count=2``).
+        ``[*]`` means all items of a list, ``[+]`` adds one: ``supply.feeders[+]={"at": "A", "track": "1", ...}``.
         The value is read as in YAML: a number, ``true``, ``false``, ``null`` (clears an optional value) or a text; a
         text in quotes stays a text. In braces or brackets it is JSON: ``timetable.driving={"kind": "to_time"}``.
 
@@ -48,12 +53,12 @@ def apply_change(scenario: Scenario, change: str) -> Scenario:
     return apply_changes(scenario, [change])
 
 
-def apply_changes(scenario: Scenario, changes: Iterable[str], conductors: Sequence[Conductor] = ()) -> Scenario:
+def apply_changes(scenario: Scenario, changes: Iterable[str], library: Library | None = None) -> Scenario:
     """Return `scenario` with all `changes` applied in their order and validated once at the end.
 
     Changes that only hold together, such as taking `power_kw` from a load and giving it `current_a`, go in one call.
-    See `apply_change` for their form. A scenario holds the conductors that its supply uses; `conductors` are further ones
-    that changes may name.
+    See `apply_change` for their form. A scenario holds the conductors, duty classes and rectifier units that its supply
+    uses; `library` has further ones that changes may name.
 
     Raises
     ------
@@ -69,13 +74,20 @@ def apply_changes(scenario: Scenario, changes: Iterable[str], conductors: Sequen
             problems.extend(error.problems)
     if problems:
         raise InputError(problems)
-    if isinstance(plain["conductors"], list):
-        own = {(row.get("kind"), row.get("name")) for row in plain["conductors"] if isinstance(row, dict)}
-        plain["conductors"] += [row for row in conductors if (row.kind, row.name) not in own]
+    if library is not None:
+        _add_rows(plain, library)
     try:
         return Scenario.model_validate(plain)
     except ValidationError as error:
         raise InputError(_complaints(plain, error)) from error
+
+
+def _add_rows(plain: dict[str, Any], library: Library) -> None:
+    """Add the rows of the tables that are not in `plain` yet; the model keeps those that are used."""
+    for name, keys in KEYS.items():
+        if isinstance(plain[name], list):
+            own = {tuple(row.get(key) for key in keys) for row in plain[name] if isinstance(row, dict)}
+            plain[name] += [row for row in getattr(library, name) if tuple(getattr(row, key) for key in keys) not in own]
 
 
 def model_path(plain: Any, location: Sequence[str | int]) -> str:
@@ -141,15 +153,21 @@ def _thaw(value: Any) -> Any:
 
 def _change(plain: dict[str, Any], change: str) -> None:
     path, value = _parse(change)
-    steps = _steps(path)
-    container: Any = plain
-    done = ""
-    for position, (step, label) in enumerate(steps):
-        key = _key(container, step, path, done)
-        if position == len(steps) - 1:
-            container[key] = value
+    _set(plain, _steps(path), value, path, "")
+
+
+def _set(container: Any, steps: Sequence[tuple[str, str]], value: Any, path: str, done: str) -> None:
+    """Set what `steps` lead to from `container`, which the path `done` has led to."""
+    (step, label), rest = steps[0], steps[1:]
+    if label == ADDED and isinstance(container, list) and not rest:
+        container.append(copy.deepcopy(value))
+        return
+    is_all = label == ALL and isinstance(container, list) and container
+    for key in range(len(container)) if is_all else (_key(container, step, path, done),):
+        if rest:
+            _set(container[key], rest, value, path, done + label)
         else:
-            container, done = container[key], done + label
+            container[key] = copy.deepcopy(value)
 
 
 def _parse(change: str) -> tuple[str, Any]:

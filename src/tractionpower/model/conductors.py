@@ -33,6 +33,11 @@ class Conductor(Declaration):
     )
     area_mm2: Real | None = field("area_mm2", "Cross-section.", above=0, default=None)
     per_kelvin: Real = Field(default=0.0, ge=0, le=0.02, description="Temperature coefficient of the resistance at 20 °C [1/K].")
+    rated_current_a: Real | None = field(
+        "rated_current_a", "Continuous current of one cable, one wire or the rails of a track.", above=0, default=None
+    )
+    diameter_mm: Real | None = Field(default=None, gt=0, description="Outer diameter of a wire [mm].")
+    highest_c: Real | None = field("highest_c", "Highest permanent temperature of a wire.", above=0, default=None)
     wires: Text = Field(default="", description="Wires of a contact line, as 'messenger 1 L120 + contact 2 Cu100'.")
     source: Text = Field(default="", description="Where it comes from.")
     status: Status = Field(default="user", description="How the value is known.")

@@ -11,12 +11,15 @@ from pydantic_core import PydanticCustomError
 
 from tractionpower.model.base import Count, Declaration, Format, Real, Text, TimeOfDay
 from tractionpower.model.conductors import Conductor, used_conductors
+from tractionpower.model.contingency import Contingency
 from tractionpower.model.feasibility import Feasibility
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.quantity import field
+from tractionpower.model.ratings import DutyRow, RectifierUnit, used_duty, used_units
 from tractionpower.model.remedies import RemedySearch
 from tractionpower.model.services import unfold
+from tractionpower.model.sizing import Sizing
 from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Day, Timetable, TrainRun
 from tractionpower.model.vehicle import Train, Vehicle
@@ -73,6 +76,8 @@ class StudyFile(Declaration):
     seed: Count = Field(default=1, ge=0, description="Seed of everything that is drawn.")
     limits: Text | None = Field(default=None, description="CSV file that overlays the shipped limits row by row.")
     conductors: Text | None = Field(default=None, description="CSV file that overlays the shipped conductors row by row.")
+    duty_classes: Text | None = Field(default=None, description="CSV file that overlays the shipped classes, each as a whole.")
+    rectifier_units: Text | None = Field(default=None, description="CSV file that overlays the shipped units row by row.")
     coast_without_voltage_s: Real = field(
         "coast_without_voltage_s",
         "How long a train on a dead contact line coasts before it brakes to a stand.",
@@ -84,13 +89,15 @@ class StudyFile(Declaration):
     remedies: RemedySearch = Field(
         default=RemedySearch(), description="Bounds of the search for changes that make the timetable feasible."
     )
+    sizing: Sizing = Field(default=Sizing(), description="What the study of ratings asks for.")
+    contingency: Contingency = Field(default=Contingency(), description="Which outages are looked at.")
 
 
 class Scenario(Declaration):
     """One run, resolved: no file names, all parts in place.
 
-    Equal scenarios have equal `input_hash`, whatever the files were called. Of the conductors it keeps the rows that its
-    supply uses, so that a row that nobody uses changes no hash.
+    Equal scenarios have equal `input_hash`, whatever the files were called. Of conductors, duty classes and rectifier units
+    it keeps the rows that its supply uses, so that a row that nobody uses changes no hash.
     """
 
     name: Text = ""
@@ -110,10 +117,16 @@ class Scenario(Declaration):
     output: Output = Output()
     feasibility: Feasibility = Feasibility()
     remedies: RemedySearch = RemedySearch()
+    duty_classes: tuple[DutyRow, ...] = ()
+    rectifier_units: tuple[RectifierUnit, ...] = ()
+    sizing: Sizing = Sizing()
+    contingency: Contingency = Contingency()
 
     @model_validator(mode="after")
     def _keeps_what_it_uses(self) -> Scenario:
         self.__dict__["conductors"] = used_conductors(self.supply, self.conductors)
+        self.__dict__["rectifier_units"] = used_units(self.supply, self.rectifier_units)
+        self.__dict__["duty_classes"] = used_duty(self.supply, self.duty_classes, self.rectifier_units)
         return self
 
     @property

@@ -21,18 +21,60 @@ class Substation(Protection):
     """A traction substation, given by its no-load voltage and internal resistance.
 
     With k of its n equal rectifier units in service the no-load voltage stays and the resistance is R_unit/k + R_grid:
-    `internal_resistance_ohm` is that of the whole plant with all units, ``R_unit/n + R_grid``. The overcurrent trip is
-    that of each of its feeders.
+    `internal_resistance_ohm` is that of the whole plant with all units, ``R_unit/n + R_grid``; or `unit_resistance_ohm`
+    gives R_unit, so that another number of units is another plant. The overcurrent trip is that of each of its feeders.
     """
 
     id: Identifier = Field(description="Identifier of the substation.")
     km: Real = field("km", "Place of the substation.")
     no_load_voltage_v: Real = field("no_load_voltage_v", "Voltage of the busbar without load.", above=0, at_most=10_000)
-    internal_resistance_ohm: Real = field(
-        "internal_resistance_ohm", "Slope of the external characteristic, (E - U)/I.", above=0, at_most=10
+    internal_resistance_ohm: Real | None = field(
+        "internal_resistance_ohm",
+        "Slope of the external characteristic, (E - U)/I, with all units; left out: by unit_resistance_ohm.",
+        above=0,
+        at_most=10,
+        default=None,
+    )
+    unit_resistance_ohm: Real | None = field(
+        "unit_resistance_ohm", "That of one rectifier unit alone, without the grid.", above=0, at_most=10, default=None
+    )
+    unit: Identifier | None = Field(default=None, description="Type of its rectifier units, by the table of rectifier units.")
+    rated_current_a: Real | None = field(
+        "rated_current_a", "Rated current of one rectifier unit; left out: that of its type.", above=0, default=None
+    )
+    duty_class: Identifier | None = Field(
+        default=None, description="Duty class of the units, by the table of duty classes; left out: that of their type."
     )
     units: Count = Field(default=1, ge=1, description="Number of equal rectifier units.")
     units_in_service: Count | None = Field(default=None, ge=0, description="How many of them feed; left out: all.")
+    reserve_units: Count = Field(
+        default=0, ge=0, description="Further units that stand by and replace units that are out, reserve_after_s later."
+    )
+    reserve_after_s: Real = field(
+        "reserve_after_s", "Time from the outage of a unit until a reserve unit feeds.", at_least=0, default=600.0
+    )
+    reserve_overload_percent: Real = field(
+        "reserve_overload_percent",
+        "Overload permitted to the other units until then: their currents count by so much less.",
+        at_least=0,
+        at_most=200,
+        default=0.0,
+    )
+    supply_point: Identifier | None = Field(
+        default=None, description="Point of the feeding grid that it shares with substations of the same name; left out: its own."
+    )
+    contract_power_kw: Real | None = field(
+        "contract_power_kw",
+        "Greatest mean power over a quarter of an hour by the clock at its supply point; one substation of each says it.",
+        above=0,
+        default=None,
+    )
+    feeder_rated_current_a: Real | None = field(
+        "feeder_rated_current_a", "Continuous current of each of its feeders, where they have no own.", above=0, default=None
+    )
+    return_rated_current_a: Real | None = field(
+        "return_rated_current_a", "Continuous current of its return feeder, where it has no own.", above=0, default=None
+    )
     grid_resistance_ohm: Real = field(
         "grid_resistance_ohm",
         "Part of the internal resistance that the feeding grid causes and that no unit shares.",
@@ -75,9 +117,19 @@ class Substation(Protection):
     def _units(self) -> Substation:
         if self.units_in_service is not None and self.units_in_service > self.units:
             raise PydanticCustomError("units", "units_in_service is more than units")
-        if self.grid_resistance_ohm >= self.internal_resistance_ohm:
+        if (self.internal_resistance_ohm is None) == (self.unit_resistance_ohm is None):
+            raise PydanticCustomError("resistance", "a substation has either internal_resistance_ohm or unit_resistance_ohm")
+        if self.internal_resistance_ohm is not None and self.grid_resistance_ohm >= self.internal_resistance_ohm:
             raise PydanticCustomError("grid_resistance", "grid_resistance_ohm is not below internal_resistance_ohm")
         return self
+
+    @property
+    def plant_resistance_ohm(self) -> float:
+        """Internal resistance with all units, R_unit/n + R_grid [ohm]."""
+        if self.unit_resistance_ohm is not None:
+            return self.unit_resistance_ohm / self.units + self.grid_resistance_ohm
+        assert self.internal_resistance_ohm is not None
+        return self.internal_resistance_ohm
 
     @property
     def feeds(self) -> bool:
@@ -101,6 +153,9 @@ class SectionCabin(Protection):
         "Resistance of each feeder from the busbar to the contact line, one per track and side.",
         at_least=0,
         default=0.0,
+    )
+    feeder_rated_current_a: Real | None = field(
+        "feeder_rated_current_a", "Continuous current of each of its feeders, where they have no own.", above=0, default=None
     )
     tracks: Tracks | None = Field(default=None, description=_ALL_TRACKS)
 
@@ -143,6 +198,12 @@ class ContactLine(Stretch):
     temperature_c: Real | None = field(
         "temperature_c", "Temperature of the wires; left out: 20 °C.", at_least=-50, at_most=200, default=None
     )
+    rated_current_a: Real | None = field(
+        "rated_current_a",
+        "Continuous current of the contact line of one track; left out: reckoned from its wires, where they are known.",
+        above=0,
+        default=None,
+    )
     tracks: Tracks | None = Field(default=None, description=_ALL_TRACKS)
 
     @model_validator(mode="after")
@@ -178,6 +239,9 @@ class ReturnCircuit(Stretch):
         at_least=0,
         at_most=1000,
         default=0.0,
+    )
+    rated_current_a: Real | None = field(
+        "rated_current_a", "Continuous current of all rails of the listed tracks together.", above=0, default=None
     )
     tracks: Tracks | None = Field(default=None, description="Tracks that share this one conductor; left out: all tracks.")
 

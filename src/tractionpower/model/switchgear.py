@@ -37,6 +37,9 @@ class Cable(Declaration):
     cable: Identifier | None = Field(default=None, description="Type of the cable, by the conductors table.")
     cables: Count = Field(default=1, ge=1, description="Number of cables in parallel.")
     length_m: Real | None = field("length_m", "Length of the cable.", above=0, default=None)
+    rated_current_a: Real | None = field(
+        "rated_current_a", "Continuous current of all cables together; left out: that of the cable's type.", above=0, default=None
+    )
 
     @model_validator(mode="after")
     def _resistance_or_cable(self) -> Cable:

@@ -2,27 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from tractionpower.model.quantity import Quantity
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """A column: its quantity and how it is stored (``f8``, ``f4``, ``text``, ``bool``, ``i4``)."""
-
-    quantity: Quantity
-    kind: str = "f4"
-
-    @property
-    def name(self) -> str:
-        """Name of the column."""
-        return self.quantity.name
-
-
-def _column(name: str, meaning: str, kind: str = "f4") -> Column:
-    return Column(Quantity(name, meaning), kind)
-
+from tractionpower.results.column import Column
+from tractionpower.results.column import column as _column
+from tractionpower.results.sizing_columns import SIZING_TABLES
 
 TIME = _column("time_s", "Start of the step, seconds after midnight of the study's day.", "f8")
 VOLTAGE = _column("voltage_v", "Mean voltage of the step between contact line and rail.")
@@ -216,4 +198,5 @@ TABLES: dict[str, tuple[Column, ...]] = {
         _column("limit", "What is allowed.", "f8"),
         _column("message", "The event in words.", "text"),
     ),
+    **SIZING_TABLES,
 }

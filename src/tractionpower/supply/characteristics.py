@@ -36,7 +36,7 @@ def internal_resistance(substation: Substation) -> float:
     """
     k = substation.units_in_service or substation.units
     grid = substation.grid_resistance_ohm
-    return (substation.internal_resistance_ohm - grid) * substation.units / k + grid
+    return (substation.plant_resistance_ohm - grid) * substation.units / k + grid
 
 
 def dissipative_resistance(substation: Substation) -> float | None:

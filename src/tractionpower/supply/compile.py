@@ -21,6 +21,7 @@ from tractionpower.supply.characteristics import (
     load_segments,
     source_segments,
 )
+from tractionpower.supply.gauges import Section, find_sections, gauge_table
 from tractionpower.supply.links import link_tables
 from tractionpower.supply.numbering import find_returning, number_nodes
 from tractionpower.supply.probes import find_probes
@@ -94,6 +95,8 @@ class SupplyTables:
     sections, section_table
         Track and kilometre of the places whose voltage is recorded, so that the voltage runs straight between them; and
         where the solver finds it, record array of `SECTION`.
+    conductor_sections, gauge_table
+        Sections of contact lines and rails, and their ends whose currents are recorded, record array of `GAUGE`.
     rail_places, rail_table
         Places of the rails whose potential is recorded, none where nothing is joined with earth; and where the solver
         finds it, record array of `RAIL`.
@@ -124,6 +127,8 @@ class SupplyTables:
     terms: NDArray[np.void]
     sections: tuple[tuple[str, float], ...]
     section_table: NDArray[np.void]
+    conductor_sections: tuple[Section, ...]
+    gauge_table: NDArray[np.void]
     rail_places: tuple[RailPlace, ...]
     rail_table: NDArray[np.void]
     earth_devices: tuple[str, ...]
@@ -186,6 +191,7 @@ class _Compiler:
         port_of = {substation.id: k for k, substation in enumerate(self.substations) if substation.id in feeding}
         busbars = [topology.busbars[s.id] if s.id in self.returning else None for s in self.substations]
         links, terms = link_tables(topology, self._edge_numbers(), port_of)
+        sections = find_sections(topology, self.supply)
         watched = find_triggers(self.supply, topology.links)
         return SupplyTables(
             supply=self.supply,
@@ -201,6 +207,8 @@ class _Compiler:
             terms=terms,
             sections=tuple((place.track, place.km) for place in topology.sections) + tuple(self.probes),
             section_table=self._section_table(),
+            conductor_sections=sections,
+            gauge_table=gauge_table(sections, self.first_conductor),
             rail_places=self.rail_places,
             rail_table=rail_table(topology, self.rail_places, self.nodes, self.first_conductor),
             earth_devices=tuple(item.id for item in topology.earth_links),

@@ -15,12 +15,12 @@ def check_resistances(supply: Supply) -> list[Problem]:
         Problem(
             "dissipative_above_internal",
             f"supply.substations[{station.id}].dissipative_resistance_ohm",
-            f"{station.dissipative_resistance_ohm:g} ohm of heat in {station.internal_resistance_ohm:g} ohm internal resistance",
-            f"0 to {station.internal_resistance_ohm:g} ohm",
+            f"{station.dissipative_resistance_ohm:g} ohm of heat in {station.plant_resistance_ohm:g} ohm internal resistance",
+            f"0 to {station.plant_resistance_ohm:g} ohm",
             "the part cannot be above the whole",
         )
         for station in supply.substations
-        if (station.dissipative_resistance_ohm or 0.0) > station.internal_resistance_ohm
+        if (station.dissipative_resistance_ohm or 0.0) > station.plant_resistance_ohm
     ]
 
 
@@ -33,7 +33,8 @@ def check_units(supply: Supply) -> list[Problem]:
     switched = {event.device for event in supply.switch_events if event.units_in_service is not None}
     problems = []
     for station in supply.substations:
-        is_used = station.units_in_service is not None or station.grid_resistance_ohm > 0.0 or station.id in switched
+        is_described = station.unit_resistance_ohm is not None or station.grid_resistance_ohm > 0.0
+        is_used = is_described or station.units_in_service is not None or station.id in switched
         if station.units > 1 and not is_used:
             found = f"{station.units} units change nothing: internal_resistance_ohm is that of all of them together"
             remedy = "another number of units needs another internal_resistance_ohm; units_in_service says how many of them feed"

@@ -4,7 +4,7 @@ import pytest
 from fake_results import make_case
 from read_workbook import read_table, texts
 
-from tractionpower.io.conductor_files import change
+from tractionpower.io.library import change
 
 GIVEN = "supply.contact_lines[0].resistance_ohm_per_km=null"
 FIRST = 6  # study, substations, cabins, contact lines, return circuit, loads come before

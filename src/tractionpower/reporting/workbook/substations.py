@@ -79,7 +79,7 @@ def _main(facts: Facts) -> tuple[list[Column], list[list[Any]]]:
             getters.append(lambda place, name=name: parse_time(facts.when(place, name)))  # type: ignore[misc]
     rows = [
         [s.id, s.km, s.state.replace("_", " "), *([events[s.id]] if any(events.values()) else [])]
-        + [s.no_load_voltage_v, s.internal_resistance_ohm]
+        + [s.no_load_voltage_v, s.plant_resistance_ohm]
         + [get(f"substation {s.id}") for get in getters]
         for s in sorted(facts.scenario.supply.substations, key=lambda s: (s.km, s.id))
     ]

@@ -9,7 +9,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from tractionpower.kernels.block_tables import Buffers
 from tractionpower.kernels.train_tables import POINT
+from tractionpower.supply.compile import SupplyTables
 
 Floats = NDArray[np.float64]
 
@@ -90,8 +92,9 @@ class Recording:
     def __init__(self) -> None:
         self._parts: list[NDArray[np.void]] = []
 
-    def __call__(self, rows: NDArray[np.void]) -> None:
-        """Take rows of `TRAIN_ROW`."""
+    def __call__(self, time_s: Floats, steps: Buffers, supply: SupplyTables) -> None:
+        """Take the rows of some steps."""
+        rows = steps.trains
         kept = np.empty(len(rows), TRACE)
         for name in ("train", "time_s", "s_m", "voltage_v", "on_line_s"):
             kept[name] = rows[name]

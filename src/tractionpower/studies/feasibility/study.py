@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 
 from tractionpower.cosimulation.calls import call_rows
-from tractionpower.cosimulation.calls_only import run_for_calls
+from tractionpower.cosimulation.quiet import run_quietly
 from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
 from tractionpower.errors import Problem, UsageError
 from tractionpower.kernels.train_tables import GONE, OUTSIDE, STAYING
@@ -93,7 +93,7 @@ class Judging:
         calls_alone: dict[str, Any] = {"output": Output(tables=("calls",))}
         self._writer: Writer = _Nowhere() if writer is None else writer
         what = scenario.model_copy(update=calls_alone) if writer is None else scenario
-        self.run = Run(what, self._writer, study, self._recording)
+        self.run = Run(what, self._writer, study, [self._recording])
 
     def execute(self, progress: Progress | None = None) -> Judgement:
         """Run to the end of the clock, and judge."""
@@ -229,7 +229,7 @@ def lateness(scenario: Scenario) -> dict[str, float]:
     InputError
         If the scenario has errors; all of them are told.
     """
-    times = run_for_calls(scenario)
+    times = run_quietly(scenario)
     movement, state = times.movement, times.trains
     from_s, until_s = scenario.clock.start + (scenario.clock.warm_up or 0.0), scenario.clock.end
     worst: dict[str, float] = {}

@@ -110,7 +110,7 @@ def _of_substation(station: Substation) -> Iterator[SmallChange]:
         "no_load_voltage", station.id, f"+{VOLTAGE_PERCENT:g} %", (f"{path}.no_load_voltage_v={round(volts, 6):.10g}",)
     )  # fmt: skip
     least = station.grid_resistance_ohm
-    ohm = station.internal_resistance_ohm * (1.0 - VOLTAGE_PERCENT / 100.0)
+    ohm = station.plant_resistance_ohm * (1.0 - VOLTAGE_PERCENT / 100.0)
     if ohm > least:
         text = f"{path}.internal_resistance_ohm={ohm:.9f}"
         yield SmallChange("internal_resistance", station.id, f"-{VOLTAGE_PERCENT:g} %", (text,))
@@ -119,7 +119,7 @@ def _of_substation(station: Substation) -> Iterator[SmallChange]:
 def _one_more_unit(station: Substation, path: str) -> SmallChange:
     # R = R_unit / n + R_grid, see Substation
     units = station.units + 1
-    shared = (station.internal_resistance_ohm - station.grid_resistance_ohm) * station.units / units
+    shared = (station.plant_resistance_ohm - station.grid_resistance_ohm) * station.units / units
     changes = [f"{path}.units={units}", f"{path}.internal_resistance_ohm={station.grid_resistance_ohm + shared:.9f}"]
     if station.units_in_service is not None:
         changes.append(f"{path}.units_in_service={units}")

@@ -5,7 +5,7 @@ import pytest
 from coupled import couple, run
 from random_coupling import RandomCoupling
 
-from tractionpower.cosimulation import calls_only
+from tractionpower.cosimulation import quiet
 from tractionpower.cosimulation.run import Run
 from tractionpower.errors import InputError
 from tractionpower.results.store import MemoryWriter
@@ -14,11 +14,11 @@ from tractionpower.results.store import MemoryWriter
 @pytest.mark.parametrize("seed", [0, 2, 3])
 @pytest.mark.parametrize("block", [1, 37, 500])
 def test_the_times_are_those_of_the_whole_run(seed, block, monkeypatch):
-    monkeypatch.setattr(calls_only, "STEPS", block)
+    monkeypatch.setattr(quiet, "STEPS", block)
     scenario = RandomCoupling(seed).scenario
     whole = Run(scenario, MemoryWriter())
     whole.execute()
-    times = calls_only.run_for_calls(scenario)
+    times = quiet.run_quietly(scenario)
     for name in ("s_m", "v_mps", "status"):
         np.testing.assert_array_equal(times.trains.movers[name], whole.state.trains.movers[name])
     np.testing.assert_array_equal(times.trains.arrived_s, whole.state.trains.arrived_s)
@@ -30,12 +30,12 @@ def test_switches_move_in_it_too():
     scenario = couple(run("x", "series_motors", calls=[{"station": "P", "arrival": 300.0}]), end_s=500.0, switch_events=[event])
     whole = Run(scenario, MemoryWriter())
     whole.execute()
-    times = calls_only.run_for_calls(scenario)
+    times = quiet.run_quietly(scenario)
     np.testing.assert_array_equal(times.trains.arrived_s, whole.state.trains.arrived_s)
-    plain = calls_only.run_for_calls(couple(run("x", "series_motors", calls=[{"station": "P", "arrival": 300.0}]), end_s=500.0))
+    plain = quiet.run_quietly(couple(run("x", "series_motors", calls=[{"station": "P", "arrival": 300.0}]), end_s=500.0))
     assert plain.trains.arrived_s[0] < times.trains.arrived_s[0] - 0.1
 
 
 def test_a_scenario_with_errors_does_not_run():
     with pytest.raises(InputError):
-        calls_only.run_for_calls(couple(run("x", high=60.0)))
+        quiet.run_quietly(couple(run("x", high=60.0)))
