@@ -30,7 +30,7 @@ lint: setup    ## style, types, import contract
 
 test: lint     ## lint, then all tests
 	$(BIN)/python -m tests.support.warm_up
-	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --durations 10
+	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder --durations 10
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m interpreted tests/kernels tests/cosimulation
 
 bench: setup   ## measure speed beside peers; see docs/performance.md

@@ -286,3 +286,28 @@ def test_a_time_reads_back_as_the_same_number(seconds):
     time = round(seconds, 6)
     assert parse_time(format_time(time)) == time
     assert abs(time - seconds) < 1e-6
+
+
+def test_a_star_means_every_item(scenario):
+    changed = apply_change(scenario, "supply.substations[*].grid_voltage_pu=0.9")
+    assert {station.grid_voltage_pu for station in changed.supply.substations} == {0.9}
+    assert apply_change(scenario, "supply.loads[*].km=3").supply.loads[0].km == 3
+
+
+def test_a_star_in_an_empty_list_means_nothing_and_is_told(scenario):
+    with pytest.raises(InputError, match="empty"):
+        apply_change(scenario, "supply.switches[*].state=open")
+
+
+def test_a_plus_adds_an_item(scenario):
+    change = 'supply.feeders[+]={"at": "A", "track": "1", "side": "high_km", "state": "open"}'
+    changed = apply_changes(scenario, [change, change.replace("high", "low")])
+    assert [row.side for row in changed.supply.feeders[-2:]] == ["high_km", "low_km"]
+    assert len(scenario.supply.feeders) == len(changed.supply.feeders) - 2
+
+
+def test_what_is_added_obeys_the_model(scenario):
+    with pytest.raises(InputError, match="side"):
+        apply_change(scenario, 'supply.feeders[+]={"at": "A", "track": "1", "side": "top"}')
+    with pytest.raises(InputError, match=r"no '\+' in supply.feeders"):
+        apply_change(scenario, "supply.feeders[+].state=open")
