@@ -80,7 +80,11 @@ def _protections(supply: Supply, links: Sequence[Link]) -> Iterator[tuple[str, P
     stations |= {cabin.id: cabin for cabin in supply.section_cabins}
     for link in links:
         if link.kind in ("feeder", "cabin"):
-            for settings in (rows.get(link.id), stations[link.station]):
-                if settings is not None and settings.trip_current_a is not None:
-                    yield link.id, settings
-                    break
+            settings = breaker_of(rows.get(link.id), stations[link.station])
+            if settings is not None:
+                yield link.id, settings
+
+
+def breaker_of(row: Protection | None, station: Protection) -> Protection | None:
+    """Return the settings of a feeder's breaker: those of its own row, or else of its station; None where none trips."""
+    return next((item for item in (row, station) if item is not None and item.trip_current_a is not None), None)
