@@ -61,8 +61,8 @@ class HeatedWire:
         """Return what one wire gives off at a temperature, less what the sun adds [W/m]."""
         wire_k, air_k = temperature_c + _ZERO_C, weather.ambient_c + _ZERO_C
         d = self.diameter_m
-        reynolds = 1.644e9 * weather.wind_mps * d * (0.5 * (wire_k + air_k)) ** -1.78
-        nusselt = 0.65 * reynolds**0.2 + 0.23 * reynolds**0.61
+        reynolds = 1.644e9 * weather.wind_mps * d / math.pow(0.5 * (wire_k + air_k), 1.78)
+        nusselt = 0.65 * math.pow(reynolds, 0.2) + 0.23 * math.pow(reynolds, 0.61)
         convection = math.pi * _AIR_CONDUCTIVITY * nusselt * (wire_k - air_k)
         radiation = weather.emissivity * _STEFAN_BOLTZMANN * math.pi * d * (wire_k**4 - air_k**4)
         return convection + radiation - weather.absorptivity * weather.sun_wpm2 * d
