@@ -112,6 +112,23 @@ def model_path(plain: Any, location: Sequence[str | int]) -> str:
     return path
 
 
+def split_change(change: str) -> tuple[str, str]:
+    """Return the path of a change and its value as it is written.
+
+    >>> split_change("supply.loads[a=b].power_kw = 400")
+    ('supply.loads[a=b].power_kw', '400')
+
+    Raises
+    ------
+    InputError
+        If it is no change.
+    """
+    match = _CHANGE.fullmatch(change.strip())
+    if match is None or not match["value"].strip():
+        raise _refusal("bad_change", "", f"{change!r} is not a change", "PATH=VALUE", "write null as value to clear a value")
+    return match["path"].strip(), match["value"].strip()
+
+
 def parse_scalar(text: str) -> Any:
     """Return the value that `text` stands for: number, true, false, null or text; a text in quotes stays a text.
 
@@ -171,16 +188,13 @@ def _set(container: Any, steps: Sequence[tuple[str, str]], value: Any, path: str
 
 
 def _parse(change: str) -> tuple[str, Any]:
-    match = _CHANGE.fullmatch(change.strip())
-    if match is None or not match["value"].strip():
-        raise _refusal("bad_change", "", f"{change!r} is not a change", "PATH=VALUE", "write null as value to clear a value")
-    path = match["path"].strip()
-    if match["value"].lstrip()[:1] in {"{", "["}:
-        return path, _json(path, match["value"])
+    path, value = split_change(change)
+    if value[:1] in {"{", "["}:
+        return path, _json(path, value)
     try:
-        return path, parse_scalar(match["value"])
+        return path, parse_scalar(value)
     except ValueError:
-        raise _refusal("bad_change", path, f"the quotes in {match['value']} do not pair", "a number or a text") from None
+        raise _refusal("bad_change", path, f"the quotes in {value} do not pair", "a number or a text") from None
 
 
 def _json(path: str, text: str) -> Any:
