@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +88,11 @@ class QuietRun:
     def movement(self) -> Movement:
         """The trains and their routes."""
         return self.compiled.movement
+
+    @property
+    def events(self) -> list[dict[str, Any]]:
+        """What was switched so far, and what switched by itself."""
+        return self._board.rows
 
     @property
     def trains(self) -> TrainState:

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from tractionpower.cosimulation.calls import call_rows
+from tractionpower.cosimulation.lateness import STUCK_S, lateness_of
 from tractionpower.cosimulation.quiet import run_quietly
 from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
 from tractionpower.errors import Problem, UsageError
-from tractionpower.kernels.train_tables import GONE, OUTSIDE, STAYING
+from tractionpower.kernels.train_tables import OUTSIDE
 from tractionpower.model.scenario import Output, Scenario
 from tractionpower.movement.compile import Movement
 from tractionpower.movement.journey import calls_of
@@ -30,9 +30,6 @@ from tractionpower.studies.feasibility.tables import feasibility_notes, key_figu
 from tractionpower.studies.feasibility.verdicts import Judged, Span, judge_train
 
 USEFUL = ("mean_useful_voltage_current_weighted_v", "mean_useful_voltage_time_mean_v")
-
-STUCK_S = 60.0
-"""A train that has held itself for so long at the end of the run is stuck [s]."""
 
 
 class _Nowhere:
@@ -229,20 +226,8 @@ def lateness(scenario: Scenario) -> dict[str, float]:
     InputError
         If the scenario has errors; all of them are told.
     """
-    times = run_quietly(scenario)
-    movement, state = times.movement, times.trains
-    from_s, until_s = scenario.clock.start + (scenario.clock.warm_up or 0.0), scenario.clock.end
-    worst: dict[str, float] = {}
-    for k, planned in enumerate(movement.runs):
-        calls = calls_of(planned, state, int(movement.tables.trains[k]["first_stop"]))
-        late = [0.0]
-        for row in call_rows(planned.run.id, calls, planned.route_m):
-            if np.isfinite(row.planned_s) and not (row.actual_s < from_s - 1e-9):
-                late.append(row.late_s if np.isfinite(row.actual_s) else max(0.0, until_s - row.planned_s))
-        mover = state.movers[k]
-        stuck = mover["held_s"] >= STUCK_S and mover["status"] not in (GONE, STAYING)
-        worst[planned.run.id] = float("inf") if stuck else max(late)
-    return worst
+    found = lateness_of(run_quietly(scenario))
+    return {train: float("inf") if each.holds else float(np.nan_to_num(each.late_s)) for train, each in found.items()}
 
 
 def feasibility(

@@ -1,0 +1,65 @@
+"""What a run takes from the feeding grid: energies, and the demand of supply points."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.kernels.block_tables import Buffers
+from tractionpower.results.extremes import add_up
+from tractionpower.results.ledgers import ElectricLedger
+from tractionpower.results.windows import ClockDemand
+from tractionpower.supply.characteristics import dissipative_resistance
+from tractionpower.supply.compile import SupplyTables
+
+Floats = NDArray[np.float64]
+
+
+class EnergyWatch:
+    """Sums up the powers of substations.
+
+    Parameters
+    ----------
+    supply
+        What runs.
+    step_s
+        Length of a step [s].
+
+    Attributes
+    ----------
+    ledger
+        The electric ledger of the steps.
+    """
+
+    def __init__(self, supply: SupplyTables, step_s: float) -> None:
+        self._step_s = step_s
+        points = [station.supply_point or station.id for station in supply.substations]
+        names = sorted(set(points))
+        self._at_point = np.array([[point == name for name in names] for point in points], float).reshape(len(points), len(names))
+        self._demand = ClockDemand(len(names), step_s)
+        self._busbar_j = np.zeros(1)
+        self.ledger = ElectricLedger()
+
+    def add(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
+        """Take steps."""
+        self.ledger.add(rows.steps, self._step_s)
+        power = np.nan_to_num(rows.source_v) * rows.source_a
+        self._busbar_j = add_up(self._busbar_j, power.sum(axis=1, keepdims=True) * self._step_s)
+        heat_ohm = np.array([dissipative_resistance(station) or 0.0 for station in supply.substations])
+        self._demand.add(time_s, (power + heat_ohm * rows.source_a**2) @ self._at_point)
+
+    @property
+    def busbar_kwh(self) -> float:
+        """Energy of all substations at their busbars."""
+        return float(self._busbar_j[0]) / 3.6e6
+
+    @property
+    def line_loss_kwh(self) -> float:
+        """Heat in contact lines, rails and feeders."""
+        return self.ledger.energy_j["conductor"] / 3.6e6
+
+    @property
+    def highest_demand_kw(self) -> float:
+        """Highest mean power of a supply point over a quarter of an hour by the clock; NaN where none was complete."""
+        best = self._demand.best
+        return float(np.fmax.reduce(best, initial=np.nan)) / 1000.0

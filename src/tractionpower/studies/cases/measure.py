@@ -1,0 +1,162 @@
+"""What one case comes to: a run of which nothing is recorded, watched for voltages, devices, trains and energies.
+
+Outages, sweeps and the search for equipment all measure their cases by the one function `measure`, so that their figures mean
+the same and can be held against each other.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from tractionpower.cosimulation.lateness import TrainLateness, lateness_of
+from tractionpower.cosimulation.places import Places
+from tractionpower.cosimulation.quiet import QuietRun
+from tractionpower.kernels.block_tables import Buffers, take_rows
+from tractionpower.model.scenario import Scenario
+from tractionpower.results.useful_voltage import UsefulVoltage
+from tractionpower.studies.cases.energy import EnergyWatch
+from tractionpower.studies.cases.rails import RailWatch
+from tractionpower.studies.cases.voltages import VoltageWatch, case_table, coded
+from tractionpower.studies.runner.case import CaseResult
+from tractionpower.supply.compile import SupplyTables
+
+Floats = NDArray[np.float64]
+
+NAN = float("nan")
+
+
+def measure(scenario: Scenario) -> CaseResult:
+    """Run a scenario and return the key figures and tables of a case; its warm-up does not count.
+
+    Raises
+    ------
+    InputError
+        If the scenario has errors; all of them are told.
+    """
+    run = QuietRun(scenario)
+    watch = CaseWatch(run)
+    run.watches.append(watch)
+    run.execute()
+    late = lateness_of(run)
+    figures = {**_status(run, watch), **watch.figures(), **_train_figures(late, scenario.feasibility.tolerance_s)}
+    figures |= {"trips": _trips(run), "flagged_steps": run.flagged_steps}
+    figures |= {"utilisation_percent": NAN, "utilisation_device": "", "overloaded": 0}
+    tables = {"case_profile": watch.voltages.profile(), "case_rails": watch.rails.profile()}
+    tables["case_trains"] = trains_table(late, scenario.feasibility.tolerance_s)
+    return CaseResult(figures, tables)
+
+
+class CaseWatch:
+    """Watches a run for all but its devices.
+
+    Parameters
+    ----------
+    run
+        What is watched; put this among its watches before it is executed.
+
+    Attributes
+    ----------
+    voltages, rails, energy
+        What was found of each.
+    """
+
+    def __init__(self, run: QuietRun) -> None:
+        scenario, supply = run.scenario, run.compiled.supply
+        clock = scenario.clock
+        self._from_s, self._step_s = clock.start + (clock.warm_up or 0.0), clock.step_s
+        self._places, self._trains = Places(scenario, run.movement), run.movement.names
+        self.voltages, self.rails = VoltageWatch(supply, self._places), RailWatch(supply, self._places)
+        self.energy = EnergyWatch(supply, clock.step_s)
+        self._useful = UsefulVoltage(len(self._trains), len(self._places.zones))
+
+    def __call__(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
+        """Take the rows of some steps."""
+        counted = time_s >= self._from_s - 1e-9
+        if not counted.any():
+            return
+        time_s, rows = time_s[counted], take_rows(rows, counted)
+        trains = rows.trains
+        placed = self._places.place(trains["train"], trains["s_m"])
+        self.voltages.add(time_s, rows, supply, placed)
+        self.rails.add(rows, placed)
+        self.energy.add(time_s, rows, supply)
+        live = trains["voltage_v"] != 0.0
+        zone, shown = self._places.zone(placed)[live], trains[live]
+        tractive = shown["traction_n"] > 0.0
+        self._useful.add(shown["train"], zone, shown["voltage_v"], shown["current_a"], tractive, self._step_s)
+
+    def figures(self) -> dict[str, Any]:
+        """Return the key figures of voltages, rail potentials and energies."""
+        lowest, greatest = self.voltages.lowest, self.rails.greatest
+        zone_v, zone = _least(self._useful.zone_current_weighted_v, self._places.zones)
+        train_v, train = _least(self._useful.train_current_weighted_v, self._trains)
+        return {
+            "lowest_voltage_v": lowest[0],
+            "lowest_voltage_track": lowest[1],
+            "lowest_voltage_km": lowest[2],
+            "lowest_voltage_s": lowest[3],
+            "highest_voltage_v": float(self.voltages.highest_v),
+            "useful_zone_v": zone_v,
+            "useful_zone": zone,
+            "useful_train_v": train_v,
+            "useful_train": train,
+            "rail_potential_v": greatest[0],
+            "rail_potential_km": greatest[1],
+            "energy_kwh": self.energy.busbar_kwh,
+            "line_loss_kwh": self.energy.line_loss_kwh,
+            "highest_demand_kw": self.energy.highest_demand_kw,
+        }
+
+
+def _least(volts: Floats, names: list[str] | tuple[str, ...]) -> tuple[float, str]:
+    """Return the lowest of some voltages [V] and whose it is; NaN where there is none."""
+    if not np.isfinite(volts).any():
+        return NAN, ""
+    k = int(np.nanargmin(volts))
+    return float(volts[k]), names[k]
+
+
+def _status(run: QuietRun, watch: CaseWatch) -> dict[str, str]:
+    """Return whether all steps were solved, as a run says it, and if not, why."""
+    reasons = []
+    if run.flagged_steps:
+        reasons.append(f"{run.flagged_steps} steps did not converge or could not be served")
+    if not watch.energy.ledger.closes:
+        reasons.append("the electric ledger does not close")
+    return {"status": "flagged" if reasons else "complete", "reason": "; ".join(reasons)}
+
+
+def _trips(run: QuietRun) -> int:
+    clock = run.scenario.clock
+    from_s = clock.start + (clock.warm_up or 0.0)
+    return sum(row["kind"] == "tripped" and row["time_s"] >= from_s - 1e-9 for row in run.events)
+
+
+def _train_figures(late: dict[str, TrainLateness], tolerance_s: float) -> dict[str, Any]:
+    timed = {train: each.late_s for train, each in late.items() if np.isfinite(each.late_s)}
+    worst = max(timed, key=lambda train: timed[train], default="")
+    return {
+        "late_trains": sum(seconds > tolerance_s for seconds in timed.values()),
+        "worst_late_s": timed.get(worst, NAN),
+        "worst_late_train": worst if timed.get(worst, 0.0) > 0.0 else "",
+        "stuck_trains": sum(each.holds or each.dark for each in late.values()),
+    }
+
+
+def trains_table(late: dict[str, TrainLateness], tolerance_s: float) -> pa.Table:
+    """Return table ``case_trains`` without the column case; what is added to the base case is not known yet."""
+    names = sorted(late)
+    status = ["stuck" if late[k].holds or late[k].dark else "late" if late[k].late_s > tolerance_s else "on time" for k in names]
+    return case_table(
+        "case_trains",
+        {
+            "train": coded(names),
+            "late_s": [late[k].late_s for k in names],
+            "added_late_s": np.full(len(names), NAN),
+            "status": coded(status),
+        },
+    )

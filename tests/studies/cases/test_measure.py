@@ -1,0 +1,106 @@
+"""What is measured of a case against the tables and key figures of the whole run of the same scenario."""
+
+import numpy as np
+import pytest
+from coupled import couple, run
+from random_coupling import RandomCoupling
+from small_studies import load, make_scenario, run_in_memory
+
+from tractionpower.cosimulation import quiet
+from tractionpower.studies.cases.measure import measure
+from tractionpower.studies.feasibility.study import feasibility
+
+
+def figures_of(results):
+    return {(figure["name"], figure["place"]): figure["value"] for figure in results.key_figures}
+
+
+@pytest.mark.parametrize("seed", [0, 2, 3])
+def test_figures_are_those_of_the_whole_run(seed):
+    scenario = RandomCoupling(seed).scenario
+    case, (results, outcome, _) = measure(scenario), run_in_memory(scenario)
+    told, known = case.figures, {name: value for (name, _), value in figures_of(results).items()}
+    assert told["lowest_voltage_v"] == known["lowest_voltage_v"]
+    assert told["highest_voltage_v"] == known["highest_voltage_v"]
+    energy = sum(value for (name, place), value in figures_of(results).items() if name == "energy_kwh" and "substation" in place)
+    assert told["energy_kwh"] == pytest.approx(energy, rel=1e-12)
+    assert told["line_loss_kwh"] == pytest.approx(known["line_loss_kwh"], rel=1e-12)
+    assert told["status"] == outcome.run["status"]
+    assert told["flagged_steps"] == outcome.run["flagged_steps"]
+
+
+def test_the_profile_is_that_of_the_whole_run(busy_coupling):
+    case, (results, _, _) = measure(busy_coupling), run_in_memory(busy_coupling)
+    whole = results.table("profile").groupby(["track", "km"], observed=True)["lowest_voltage_v"].min()
+    profile = case.tables["case_profile"].to_pandas().set_index(["track", "km"])["lowest_voltage_v"]
+    assert dict(zip(profile.index, profile, strict=True)) == dict(zip(whole.index, whole, strict=True))
+    assert list(profile.index) == sorted(profile.index)
+
+
+@pytest.fixture(scope="module")
+def busy_coupling():
+    warm = {"warm_up": 100.0}
+    runs = [run("1", time=0.0), run("2", "series_motors", "2", 20.0, 0.0, time=30.0), run("3", "table", time=200.0)]
+    leaky = [{"from_km": 0.0, "to_km": 20.0, "resistance_ohm_per_km": 0.02, "leakage_s_per_km": 0.1}]
+    return couple(*runs, end_s=600.0, return_circuit=leaky).model_copy(
+        update={"clock": couple(*runs, end_s=600.0).clock.model_copy(update=warm)}
+    )
+
+
+def test_rail_potentials_and_useful_voltages_are_those_of_the_whole_run(busy_coupling):
+    case, (results, _, _) = measure(busy_coupling), run_in_memory(busy_coupling)
+    figures = figures_of(results)
+    lowest = min(value for (name, _), value in figures.items() if name == "lowest_rail_potential_v")
+    highest = max(value for (name, _), value in figures.items() if name == "highest_rail_potential_v")
+    assert case.figures["rail_potential_v"] == pytest.approx(max(-lowest, highest), rel=1e-12)
+    rails = case.tables["case_rails"].to_pandas()
+    assert rails["lowest_potential_v"].min() == pytest.approx(lowest, rel=1e-6)
+    assert rails["highest_potential_v"].max() == pytest.approx(highest, rel=1e-6)
+    useful = {place: value for (name, place), value in figures.items() if name == "mean_useful_voltage_current_weighted_v"}
+    trains = {place: value for place, value in useful.items() if place.startswith("train ")}
+    assert case.figures["useful_train_v"] == pytest.approx(min(trains.values()), rel=1e-12)
+    assert f"train {case.figures['useful_train']}" == min(trains, key=lambda place: trains[place])
+
+
+@pytest.mark.parametrize("block", [1, 37])
+def test_nothing_depends_on_the_blocks(block, monkeypatch, busy_coupling):
+    whole = measure(busy_coupling)
+    monkeypatch.setattr(quiet, "STEPS", block)
+    pieces = measure(busy_coupling)
+    np.testing.assert_equal(pieces.figures, whole.figures)
+    for name, table in whole.tables.items():
+        assert pieces.tables[name].equals(table), name
+
+
+def test_a_study_without_trains_and_a_run_shorter_than_any_window():
+    case = measure(make_scenario(load("x", 5.0)))
+    assert case.figures["lowest_voltage_v"] < 3600.0
+    assert (case.figures["lowest_voltage_track"], case.figures["lowest_voltage_km"]) == ("1", 5.0)
+    assert case.figures["late_trains"] == case.figures["stuck_trains"] == 0
+    assert np.isnan(case.figures["highest_demand_kw"])
+    assert case.tables["case_trains"].num_rows == case.tables["case_rails"].num_rows == 0
+
+
+def test_the_demand_is_that_of_quarters_of_an_hour_and_of_the_points_that_substations_share():
+    shared = [
+        {"id": name, "km": km, "no_load_voltage_v": 3600.0, "internal_resistance_ohm": 0.1, "supply_point": "grid",
+         "dissipative_resistance_ohm": 0.02}
+        for name, km in (("A", 0.0), ("B", 20.0))
+    ]  # fmt: skip
+    scenario = make_scenario(load("x", 7.0), substations=shared, clock={"end": 900.0, "step_s": 5.0})
+    case, (results, _, _) = measure(scenario), run_in_memory(scenario)
+    rows = results.table("substations")
+    assert case.figures["highest_demand_kw"] == pytest.approx((rows["power_kw"] + rows["loss_kw"]).sum() / 180, rel=1e-6)
+
+
+def test_a_train_that_never_comes_is_late_by_the_time_left_and_one_without_voltage_is_stuck():
+    dead = {"device": "A", "time": 60.0, "state": "open"}
+    more = [{"device": "B", "time": 60.0, "state": "open"}]
+    scenario = couple(run("x", calls=[{"station": "P", "arrival": 300.0}]), end_s=600.0, switch_events=[dead, *more])
+    case = measure(scenario)
+    assert case.figures["worst_late_s"] == 300.0
+    assert (case.figures["late_trains"], case.figures["stuck_trains"]) == (1, 1)
+    rows = case.tables["case_trains"].to_pylist()
+    assert [(row["train"], row["late_s"], row["status"]) for row in rows] == [("x", 300.0, "stuck")]
+    judged = feasibility(scenario)
+    assert judged.run["feasibility"]["late_trains"] == 1
