@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import day
 import line
+import many
 import peers
 import report
 import solver
@@ -37,6 +38,10 @@ def _timetable(quick: bool) -> str:
     return timetable.describe(timetable.measure(1 if quick else 3))
 
 
+def _many(quick: bool) -> str:
+    return many.describe(many.measure_all(quick))
+
+
 def _peers(quick: bool) -> str:
     return peers.describe(peers.compare(*((30, 3) if quick else (60, 11))))
 
@@ -51,6 +56,7 @@ PARTS: dict[str, Callable[[bool], str]] = {
     "day": _day,
     "line": _line,
     "timetable": _timetable,
+    "many": _many,
     "peers": _peers,
     "startup": _startup,
 }
