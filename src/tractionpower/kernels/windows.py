@@ -1,7 +1,7 @@
 """Sliding windows, demand by the clock, and spells beyond a limit: one pass over the rows as they come.
 
 Every window needs the sum of its last rows. What is kept is the running sum since the first row, in *double-double*
-(an unevaluated sum of two floats, some 32 digits; Dekker 1971, Knuth's two-sum), in a ring as long as the longest
+(`kernels/double_double.py`), in a ring as long as the longest
 window: a window's sum is the difference of two running sums, so one ring serves all windows, nothing drifts over a day
 (a plain running sum loses digits at each addition and subtraction, a compensated one still needs its correction per
 window), and the sum of the same rows is the same number wherever they stand in the run.
@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.kernels.jit import inlined, njit
+from tractionpower.kernels.double_double import minus, plus
+from tractionpower.kernels.jit import njit
 
 GAP_STEPS = 1.5
 """Rows of a train that lie further apart than so many steps do not follow each other."""
@@ -99,25 +100,6 @@ SPELL = np.dtype(
 """A series against a limit."""
 
 
-@inlined
-def _plus(high, low, x):
-    """Return the double-double (high, low) + x."""
-    total = high + x
-    part = total - high
-    rest = (high - (total - part)) + (x - part) + low
-    high = total + rest
-    return high, rest - (high - total)
-
-
-@inlined
-def _minus(high, low, other_high, other_low):
-    """Return the difference of two double-doubles, rounded to one float."""
-    total = high - other_high
-    part = total - high
-    rest = (high - (total - part)) - (other_high + part)
-    return total + (rest + (low - other_low))
-
-
 @njit
 def slide(sliding, count, sign, until_s, values):
     """Add rows to the sliding sums.
@@ -141,13 +123,13 @@ def slide(sliding, count, sign, until_s, values):
         k = count + i + 1
         before, now, end = (k - 1) % size, k % size, until_s[i]
         for c in range(width):
-            high[now, c], low[now, c] = _plus(high[before, c], low[before, c], sign * values[i, c])
+            high[now, c], low[now, c] = plus(high[before, c], low[before, c], sign * values[i, c])
         for w in range(sliding.steps.shape[0]):
             if sliding.steps[w] > k:
                 continue
             then = (k - sliding.steps[w]) % size
             for c in range(width):
-                total = _minus(high[now, c], low[now, c], high[then, c], low[then, c])
+                total = minus(high[now, c], low[now, c], high[then, c], low[then, c])
                 better = total > best[w, c]
                 best[w, c] = total if better else best[w, c]  # without a branch, so that the loop runs in vectors
                 best_s[w, c] = end if better else best_s[w, c]
@@ -182,12 +164,12 @@ def slide_trains(sliding, sign, step_s, time_s, train, values, at):
         state.last_s = time_s[i]
         k = state.rows
         now = k % size
-        high[ring, now], low[ring, now] = _plus(high[ring, before], low[ring, before], sign * values[i])
+        high[ring, now], low[ring, now] = plus(high[ring, before], low[ring, before], sign * values[i])
         for w in range(sliding.steps.shape[0]):
             if sliding.steps[w] > k:
                 continue
             then = (k - sliding.steps[w]) % size
-            total = _minus(high[ring, now], low[ring, now], high[ring, then], low[ring, then])
+            total = minus(high[ring, now], low[ring, now], high[ring, then], low[ring, then])
             if total > sliding.best[w, t]:
                 sliding.best[w, t] = total
                 sliding.until_s[w, t] = time_s[i] + step_s

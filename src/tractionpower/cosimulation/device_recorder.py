@@ -1,0 +1,121 @@
+"""What currents load the devices of a supply with, watched while a run lasts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.kernels.block_tables import Buffers
+from tractionpower.model.scenario import Scenario
+from tractionpower.model.supply import Substation
+from tractionpower.results.device_loads import DeviceLoads
+from tractionpower.results.windows import WINDOWS_S
+from tractionpower.supply.compile import SupplyTables
+from tractionpower.supply.devices import Device, DeviceCurrents
+
+Floats = NDArray[np.float64]
+
+_TINY_S = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """A time in which a unit of a substation is out and its reserve does not feed yet, so that an overload is permitted.
+
+    Attributes
+    ----------
+    station
+        The substation.
+    from_s, to_s
+        Ends of the time [s after midnight].
+    divisor
+        By which the currents of its units count less.
+    """
+
+    station: str
+    from_s: float
+    to_s: float
+    divisor: float
+
+
+def find_waits(scenario: Scenario) -> tuple[Wait, ...]:
+    """Return the times in which a reserve unit is awaited.
+
+    Such a time begins when fewer units than before are in service, by a switch event or at the start of the clock by fewer
+    than all, and ends when one comes back, which it must within `reserve_after_s`; else no reserve is awaited.
+    """
+    return tuple(wait for station in scenario.supply.substations for wait in _waits_of(scenario, station))
+
+
+def _waits_of(scenario: Scenario, station: Substation) -> Iterator[Wait]:
+    if not station.reserve_units or not station.reserve_overload_percent:
+        return
+    events = [event for event in scenario.supply.switch_events if event.device == station.id]
+    start_s = scenario.clock.start
+    steps = [(start_s if event.time < start_s else event.time, event.units_in_service) for event in events]
+    steps = [(start_s, station.units), (start_s, station.units_in_service), *sorted(steps, key=lambda step: step[0])]
+    counts = [(time_s, units) for time_s, units in steps if units is not None]
+    for k, ((_, before), (out_s, left)) in enumerate(pairwise(counts)):
+        again = next((time_s for time_s, units in counts[k + 2 :] if units > left), None)
+        if left < before and again is not None and again <= out_s + station.reserve_after_s + _TINY_S:
+            yield Wait(station.id, out_s, again, 1.0 + station.reserve_overload_percent / 100.0)
+
+
+class DeviceRecorder:
+    """Takes the currents of all devices from the rows of a run: a watch (`cosimulation.recorder.Watch`).
+
+    What runs before the warm-up is over does not count. While a reserve unit is awaited (`find_waits`), the currents of the
+    units of its substation count divided by 1 + `reserve_overload_percent`/100; as peaks they count whole.
+
+    Parameters
+    ----------
+    scenario
+        What runs.
+    supply
+        Its supply, in any states.
+
+    Attributes
+    ----------
+    devices
+        All devices.
+    columns
+        Number of the device of each column.
+    loads
+        Loads of all columns, over the windows of all reports and those of duty classes.
+    """
+
+    def __init__(self, scenario: Scenario, supply: SupplyTables) -> None:
+        self._currents = DeviceCurrents(supply)
+        self.devices: tuple[Device, ...] = self._currents.devices
+        self.columns = self._currents.columns
+        clock = scenario.clock
+        windows_s = (*WINDOWS_S, *(row.window_s for row in scenario.duty_classes))
+        self.loads = DeviceLoads(len(self.columns), clock.step_s, windows_s)
+        self._from_s = clock.start + (clock.warm_up or 0.0)
+        number = {device.station: k for k, device in enumerate(self.devices) if device.kind == "unit"}
+        self._waits = [(number[wait.station], wait) for wait in find_waits(scenario)]
+
+    def __call__(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
+        """Take the rows of some steps, with the supply in its states then."""
+        counted = slice(int(np.searchsorted(time_s, self._from_s - _TINY_S)), None)
+        time_s, amps = time_s[counted], self._currents(rows, supply)[counted]
+        for column, wait in self._waits:
+            within = (time_s >= wait.from_s - _TINY_S) & (time_s < wait.to_s - _TINY_S)
+            self.loads.note_peak(column, time_s[within], amps[within, column])
+            amps[within, column] /= wait.divisor
+        if len(time_s):
+            self.loads.add(time_s, amps)
+
+    def of(self, device: int) -> int:
+        """Return the column of a device, of a section that of the end with the greater root mean square over the run."""
+        own = np.flatnonzero(self.columns == device)
+        return int(own[np.argmax(self.loads.rms_a[own])])
+
+    def peak_of(self, device: int) -> int:
+        """Return the column of a device, of a section that of the end with the greater peak."""
+        own = np.flatnonzero(self.columns == device)
+        return int(own[np.argmax(self.loads.peak_a[own])])

@@ -1,0 +1,134 @@
+"""Devices that currents load: rectifier units, substations, feeders and cables, switches, contact lines, rails."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.kernels.block_tables import Buffers
+from tractionpower.supply.compile import SupplyTables
+from tractionpower.supply.gauges import Section
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+SECTIONS = ("contact_line", "rails")
+"""Kinds of devices that have two ends."""
+
+_LINK_KINDS = {"feeder": "feeder", "return": "return_feeder", "cabin": "cabin_feeder", "switch": "switch"}
+
+
+@dataclass(frozen=True, slots=True)
+class Device:
+    """Something that a current loads.
+
+    Attributes
+    ----------
+    kind
+        unit (all units of a substation are equal, and share its current), substation, feeder, return_feeder, cabin_feeder,
+        switch, contact_line or rails.
+    id
+        ``A unit``, ``A``, ``A 1 low_km``, ``A return``, ``track 1 km 0-10.8``, ``rails 1 2 km 0-20``.
+    station
+        Substation or section cabin that it belongs to; empty for switches and sections.
+    track
+        Track, or tracks of the rails by blanks; empty for units, substations and their common return feeders.
+    from_km, to_km
+        Where it is; of sections both ends.
+    """
+
+    kind: str
+    id: str
+    station: str
+    track: str
+    from_km: float
+    to_km: float
+
+
+def devices_of(tables: SupplyTables) -> tuple[Device, ...]:
+    """Return all devices: units, substations, feeders and switches in their order, common return feeders, sections.
+
+    They do not depend on the states of devices.
+    """
+    stations, commons = tables.substations, {tables.substations[k].id for k in _with_common_return(tables)}
+    return (
+        *(Device("unit", f"{s.id} unit", s.id, "", s.km, s.km) for s in stations),
+        *(Device("substation", s.id, s.id, "", s.km, s.km) for s in stations),
+        *(Device(_LINK_KINDS[link.kind], link.id, link.station, link.track, link.km, link.km) for link in tables.links),
+        *(Device("return_feeder", f"{s.id} return", s.id, "", s.km, s.km) for s in stations if s.id in commons),
+        *_sections(tables.conductor_sections),
+    )
+
+
+class DeviceCurrents:
+    """Finds the currents of all devices in the rows of a run.
+
+    A unit carries its part of the current of its substation, a common return feeder what the return feeders of single tracks
+    leave of it. Sections have two columns, the currents into their low and their high end.
+
+    Parameters
+    ----------
+    tables
+        The supply, in any states.
+
+    Attributes
+    ----------
+    devices
+        All devices.
+    columns
+        Number of the device of each column.
+    """
+
+    def __init__(self, tables: SupplyTables) -> None:
+        self.devices = devices_of(tables)
+        ends = [2 if device.kind in SECTIONS else 1 for device in self.devices]
+        self.columns: Numbers = np.repeat(np.arange(len(self.devices)), ends)
+        self._commons = _with_common_return(tables)
+        number = {station.id: k for k, station in enumerate(tables.substations)}
+        self._drained = np.zeros((len(tables.links), len(number)))  # 1 where a return feeder of one track is that of a station
+        for k, link in enumerate(tables.links):
+            if link.kind == "return":
+                self._drained[k, number[link.station]] = 1.0
+
+    def __call__(self, rows: Buffers, supply: SupplyTables) -> Floats:
+        """Return the currents with their signs [A], shape (steps, columns); of a unit 0 where none is in service.
+
+        Parameters
+        ----------
+        rows
+            Rows of some steps.
+        supply
+            The supply in its states then.
+        """
+        source_a = np.nan_to_num(rows.source_a)
+        parts = [source_a / units_in_service(supply), source_a, rows.link_a]
+        if len(self._commons):
+            parts.append(source_a[:, self._commons] - (rows.link_a @ self._drained)[:, self._commons])
+        return np.concatenate([*parts, rows.gauge_a], axis=1)
+
+
+def units_in_service(supply: SupplyTables) -> Floats:
+    """Return how many units of each substation share its current in the present states, at least 1."""
+    counts = (s.units if s.units_in_service is None else s.units_in_service for s in supply.substations)
+    return np.asarray(np.maximum(np.fromiter(counts, float), 1.0))
+
+
+def _with_common_return(tables: SupplyTables) -> Numbers:
+    """Return the substations one of whose tracks has no return feeder of its own."""
+    fed, drained = ({(link.station, link.track) for link in tables.links if link.kind == kind} for kind in ("feeder", "return"))
+    common = {station for station, _ in fed - drained}
+    return np.array([k for k, station in enumerate(tables.substations) if station.id in common], np.int64)
+
+
+def _sections(sections: Sequence[Section]) -> Iterator[Device]:
+    taken: Counter[str] = Counter()
+    for section in sections:
+        what = "track" if section.kind == "contact_line" else "rails"
+        name = f"{what} {section.tracks} km {section.from_km:g}-{section.to_km:g}"
+        taken[name] += 1
+        again = f" ({taken[name]})" if taken[name] > 1 else ""  # pieces of some metres, or kilometres that come twice
+        yield Device(section.kind, name + again, "", section.tracks, section.from_km, section.to_km)
