@@ -16,6 +16,7 @@ from tractionpower.results.device_loads import DeviceLoads
 from tractionpower.results.windows import WINDOWS_S
 from tractionpower.supply.compile import SupplyTables
 from tractionpower.supply.devices import Device, DeviceCurrents
+from tractionpower.supply.ratings import Rating, ratings_of
 
 Floats = NDArray[np.float64]
 
@@ -84,8 +85,12 @@ class DeviceRecorder:
         All devices.
     columns
         Number of the device of each column.
+    ratings
+        What they can bear, in the same order.
     loads
-        Loads of all columns, over the windows of all reports and those of duty classes.
+        Loads of all columns, over the windows of all reports and those of the ratings.
+    from_s
+        From when on the run counts [s].
     """
 
     def __init__(self, scenario: Scenario, supply: SupplyTables) -> None:
@@ -93,15 +98,16 @@ class DeviceRecorder:
         self.devices: tuple[Device, ...] = self._currents.devices
         self.columns = self._currents.columns
         clock = scenario.clock
-        windows_s = (*WINDOWS_S, *(row.window_s for row in scenario.duty_classes))
+        self.ratings: tuple[Rating, ...] = ratings_of(scenario, self.devices)
+        windows_s = (*WINDOWS_S, *(window for rating in self.ratings for window, _ in rating.windows))
         self.loads = DeviceLoads(len(self.columns), clock.step_s, windows_s)
-        self._from_s = clock.start + (clock.warm_up or 0.0)
+        self.from_s = clock.start + (clock.warm_up or 0.0)
         number = {device.station: k for k, device in enumerate(self.devices) if device.kind == "unit"}
         self._waits = [(number[wait.station], wait) for wait in find_waits(scenario)]
 
     def __call__(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
         """Take the rows of some steps, with the supply in its states then."""
-        counted = slice(int(np.searchsorted(time_s, self._from_s - _TINY_S)), None)
+        counted = slice(int(np.searchsorted(time_s, self.from_s - _TINY_S)), None)
         time_s, amps = time_s[counted], self._currents(rows, supply)[counted]
         for column, wait in self._waits:
             within = (time_s >= wait.from_s - _TINY_S) & (time_s < wait.to_s - _TINY_S)

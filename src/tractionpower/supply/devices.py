@@ -64,6 +64,11 @@ def devices_of(tables: SupplyTables) -> tuple[Device, ...]:
     )
 
 
+def columns_of(devices: Sequence[Device]) -> Numbers:
+    """Return the number of the device of each column of currents: sections have two columns, all others one."""
+    return np.repeat(np.arange(len(devices)), [2 if device.kind in SECTIONS else 1 for device in devices])
+
+
 class DeviceCurrents:
     """Finds the currents of all devices in the rows of a run.
 
@@ -85,8 +90,7 @@ class DeviceCurrents:
 
     def __init__(self, tables: SupplyTables) -> None:
         self.devices = devices_of(tables)
-        ends = [2 if device.kind in SECTIONS else 1 for device in self.devices]
-        self.columns: Numbers = np.repeat(np.arange(len(self.devices)), ends)
+        self.columns = columns_of(self.devices)
         self._commons = _with_common_return(tables)
         number = {station.id: k for k, station in enumerate(tables.substations)}
         self._drained = np.zeros((len(tables.links), len(number)))  # 1 where a return feeder of one track is that of a station

@@ -1,0 +1,1 @@
+"""What every device carries, held against what it can bear."""
