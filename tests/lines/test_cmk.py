@@ -106,9 +106,10 @@ def test_substations_have_the_characteristic_of_their_units(cmk):
         no_load_v, ohm = source_of(*data, int(units), fault_va)
         assert (station.km, station.units) == (float(km), int(units))
         assert station.no_load_voltage_v == pytest.approx(no_load_v, abs=0.051), name
-        assert station.internal_resistance_ohm == pytest.approx(ohm, abs=5.1e-5), name
+        assert station.unit == unit, name
+        assert station.plant_resistance_ohm == pytest.approx(ohm, abs=5.1e-5), name
         heat_w = int(units) * (data[2] + 3 * 2.0 * data[3])  # at rated load
-        assert station.dissipative_resistance_ohm * (int(units) * data[3]) ** 2 == pytest.approx(heat_w, rel=1e-3), name
+        assert station.plant_dissipative_ohm * (int(units) * data[3]) ** 2 == pytest.approx(heat_w, rel=1e-3), name
         grid_v = no_load_v * 0.26 * int(units) * data[0] / fault_va  # the grid's part of the drop at rated load
         assert station.grid_resistance_ohm * int(units) * data[3] == pytest.approx(grid_v, abs=0.05), name
 
@@ -125,6 +126,21 @@ def test_feeders_have_the_resistance_of_their_cables(cmk, common_return):
     for station in common_return.supply.substations:
         assert station.feeder_resistance_ohm == pytest.approx(0.0105)
         assert station.return_resistance_ohm == pytest.approx(0.0146 / 2)
+
+
+def test_units_have_the_rated_current_of_their_type_and_feeders_that_of_their_cables(cmk, common_return):
+    for kind in cmk.rectifier_units:
+        assert (kind.rated_current_a, kind.transformer_mva * 1e6) == (UNITS[kind.unit][3], UNITS[kind.unit][0])
+    assert {station.unit for station in cmk.supply.substations} == {kind.unit for kind in cmk.rectifier_units}
+    each = {row.name: row.rated_current_a for row in cmk.conductors if row.kind == "cable"}
+    cabins = {cabin.id: cabin for cabin in common_return.supply.section_cabins}
+    stations = {station.id: station for station in common_return.supply.substations}
+    for row in cmk.supply.feeders:
+        rated = each[row.cable] * row.cables
+        if row.side == "return":
+            assert stations[row.at].return_rated_current_a == 2 * rated  # of both tracks
+        else:
+            assert (stations | cabins)[row.at].feeder_rated_current_a == rated
 
 
 def test_every_feeder_to_a_contact_line_has_a_breaker(cmk):

@@ -22,7 +22,8 @@ class Substation(Protection):
 
     With k of its n equal rectifier units in service the no-load voltage stays and the resistance is R_unit/k + R_grid:
     `internal_resistance_ohm` is that of the whole plant with all units, ``R_unit/n + R_grid``; or `unit_resistance_ohm`
-    gives R_unit, so that another number of units is another plant. The overcurrent trip is that of each of its feeders.
+    gives R_unit, so that another number of units is another plant; `dissipative_resistance_ohm` is a part of whichever of
+    the two is given. The overcurrent trip is that of each of its feeders.
     """
 
     id: Identifier = Field(description="Identifier of the substation.")
@@ -100,7 +101,8 @@ class Substation(Protection):
     )
     dissipative_resistance_ohm: Real | None = field(
         "dissipative_resistance_ohm",
-        "Part of the slope that is heat in copper and diodes; the rest is commutation drop and no loss.",
+        "Part of the resistance given, of internal_resistance_ohm or else of unit_resistance_ohm, that is heat in copper and"
+        " diodes; the rest is commutation drop and no loss.",
         at_least=0,
         default=None,
     )
@@ -130,6 +132,12 @@ class Substation(Protection):
             return self.unit_resistance_ohm / self.units + self.grid_resistance_ohm
         assert self.internal_resistance_ohm is not None
         return self.internal_resistance_ohm
+
+    @property
+    def plant_dissipative_ohm(self) -> float | None:
+        """Part of `plant_resistance_ohm` that is heat [ohm]; None where it is not given."""
+        given = self.dissipative_resistance_ohm
+        return given / self.units if given is not None and self.unit_resistance_ohm is not None else given
 
     @property
     def feeds(self) -> bool:

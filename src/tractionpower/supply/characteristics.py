@@ -44,7 +44,7 @@ def dissipative_resistance(substation: Substation) -> float | None:
 
     The grid is taken to dissipate nothing.
     """
-    k, given = substation.units_in_service or substation.units, substation.dissipative_resistance_ohm
+    k, given = substation.units_in_service or substation.units, substation.plant_dissipative_ohm
     return None if given is None else given * substation.units / k
 
 

@@ -11,17 +11,17 @@ from tractionpower.supply.reach import station_path
 
 def check_resistances(supply: Supply) -> list[Problem]:
     """Return substations with more heat than resistance."""
-    return [
-        Problem(
-            "dissipative_above_internal",
-            f"supply.substations[{station.id}].dissipative_resistance_ohm",
-            f"{station.dissipative_resistance_ohm:g} ohm of heat in {station.plant_resistance_ohm:g} ohm internal resistance",
-            f"0 to {station.plant_resistance_ohm:g} ohm",
-            "the part cannot be above the whole",
-        )
-        for station in supply.substations
-        if (station.dissipative_resistance_ohm or 0.0) > station.plant_resistance_ohm
-    ]
+    problems = []
+    for station in supply.substations:
+        by_unit = station.unit_resistance_ohm is not None
+        whole = station.unit_resistance_ohm if by_unit else station.internal_resistance_ohm
+        heat, words = station.dissipative_resistance_ohm, "unit resistance" if by_unit else "internal resistance"
+        if whole is not None and heat is not None and heat > whole:
+            path = f"supply.substations[{station.id}].dissipative_resistance_ohm"
+            found = f"{heat:g} ohm of heat in {whole:g} ohm {words}"
+            remedy = "the part cannot be above the whole"
+            problems.append(Problem("dissipative_above_internal", path, found, f"0 to {whole:g} ohm", remedy))
+    return problems
 
 
 def check_units(supply: Supply) -> list[Problem]:

@@ -113,6 +113,8 @@ def _of_substation(station: Substation) -> Iterator[SmallChange]:
     ohm = station.plant_resistance_ohm * (1.0 - VOLTAGE_PERCENT / 100.0)
     if ohm > least:
         text = f"{path}.internal_resistance_ohm={ohm:.9f}"
+        if station.unit_resistance_ohm is not None:
+            text = f"{path}.unit_resistance_ohm={(ohm - least) * station.units:.9f}"
         yield SmallChange("internal_resistance", station.id, f"-{VOLTAGE_PERCENT:g} %", (text,))
 
 
@@ -120,7 +122,9 @@ def _one_more_unit(station: Substation, path: str) -> SmallChange:
     # R = R_unit / n + R_grid, see Substation
     units = station.units + 1
     shared = (station.plant_resistance_ohm - station.grid_resistance_ohm) * station.units / units
-    changes = [f"{path}.units={units}", f"{path}.internal_resistance_ohm={station.grid_resistance_ohm + shared:.9f}"]
+    changes = [f"{path}.units={units}"]
+    if station.unit_resistance_ohm is None:
+        changes.append(f"{path}.internal_resistance_ohm={station.grid_resistance_ohm + shared:.9f}")
     if station.units_in_service is not None:
         changes.append(f"{path}.units_in_service={units}")
     return SmallChange("units", station.id, f"{units} units in place of {units - 1}", tuple(changes))

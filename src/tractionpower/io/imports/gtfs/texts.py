@@ -15,7 +15,7 @@ from tractionpower.model.base import format_time
 
 # Assumed supply: units PD-16 behind 110 kV, as the line wkd has them.
 _SUBSTATION = {
-    "no_load_voltage_v": 3476.7, "internal_resistance_ohm": 0.0552, "units": 2, "grid_resistance_ohm": 0.01322,
+    "no_load_voltage_v": 3476.7, "unit": "PD-16", "units": 2, "unit_resistance_ohm": 0.08396, "grid_resistance_ohm": 0.01322,
     "feeder_resistance_ohm": 0.0105,
 }  # fmt: skip
 _SPACING_KM = 10.0
