@@ -13,6 +13,7 @@ from tractionpower.results.columns import TABLES
 from tractionpower.results.touch import check_touch
 from tractionpower.supply.checks import check_supply
 from tractionpower.supply.conductor_checks import check_conductors
+from tractionpower.supply.rating_checks import check_ratings
 
 
 def check_scenario(scenario: Scenario) -> list[Problem]:
@@ -26,6 +27,7 @@ def check_all_but_movement(scenario: Scenario) -> list[Problem]:
         *check_line(scenario.line),
         *check_supply(scenario.supply, scenario.line, scenario.limits),
         *check_conductors(scenario.supply, scenario.conductors),
+        *check_ratings(scenario),
         *_check_clock(scenario),
         *_check_output(scenario),
         *check_touch(scenario.limits, scenario.supply.system),

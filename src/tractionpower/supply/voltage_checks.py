@@ -28,12 +28,13 @@ def check_units(supply: Supply) -> list[Problem]:
     """Return a warning for each number of units that changes nothing.
 
     The resistance is that of the whole plant with all of them. Where that of the grid is given too, the units are part of a
-    description that is complete, whether or not one of them is ever out.
+    description that is complete, whether or not one of them is ever out; so they are where their rated current is.
     """
     switched = {event.device for event in supply.switch_events if event.units_in_service is not None}
     problems = []
     for station in supply.substations:
-        is_described = station.unit_resistance_ohm is not None or station.grid_resistance_ohm > 0.0
+        is_rated = station.unit is not None or station.rated_current_a is not None
+        is_described = station.unit_resistance_ohm is not None or station.grid_resistance_ohm > 0.0 or is_rated
         is_used = is_described or station.units_in_service is not None or station.id in switched
         if station.units > 1 and not is_used:
             found = f"{station.units} units change nothing: internal_resistance_ohm is that of all of them together"
