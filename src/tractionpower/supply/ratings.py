@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from tractionpower.model.conductors import find_conductor
 from tractionpower.model.limits import Limit, common_limits
@@ -19,10 +19,8 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import ContactLine, ReturnCircuit, Substation
 from tractionpower.results.windows import window_label
 from tractionpower.supply.ampacity import ampacity, heated_wires, weather_of
+from tractionpower.supply.devices import Device
 from tractionpower.supply.protection import breaker_of
-
-if TYPE_CHECKING:
-    from tractionpower.supply.devices import Device
 
 NO_OVERLOAD = ((0.0, 1.0), (60.0, 1.0))
 """Windows of a unit that has no duty class: it is taken to bear no overload, not even for a minute."""
@@ -67,6 +65,13 @@ def ratings_of(scenario: Scenario, devices: Iterable[Device]) -> tuple[Rating, .
     """Return the ratings of devices of a checked scenario, in their order."""
     raters = _Raters(scenario)
     return tuple(raters.rate(device) for device in devices)
+
+
+def rating_windows(scenario: Scenario) -> tuple[float, ...]:
+    """Return the windows over which currents are held against ratings [s], those of duty classes and conductors, rising."""
+    own = {row.window_s for row in scenario.duty_classes} | {window_s for window_s, _ in NO_OVERLOAD}
+    own |= {limit.value for limit in common_limits(scenario.limits, scenario.supply.system, "window_").values()}
+    return tuple(sorted(own - {0.0}))
 
 
 def no_rating(device_id: str, why: str = "no rating given") -> Rating:
