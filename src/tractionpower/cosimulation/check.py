@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tractionpower.alignment.checks import check_line
+from tractionpower.cosimulation.useful_voltage_checks import check_useful_voltage
 from tractionpower.errors import Problem
 from tractionpower.model.base import format_time
 from tractionpower.model.scenario import Clock, Scenario
@@ -32,6 +33,7 @@ def check_all_but_movement(scenario: Scenario) -> list[Problem]:
         *_check_output(scenario),
         *check_touch(scenario.limits, scenario.supply.system),
         *_check_events(scenario),
+        *check_useful_voltage(scenario),
     ]
 
 

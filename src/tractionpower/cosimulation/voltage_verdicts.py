@@ -9,7 +9,7 @@ import numpy as np
 
 from tractionpower.cosimulation.train_recorder import TrainRecorder
 from tractionpower.model.base import format_time
-from tractionpower.model.limits import Limit, find_limit
+from tractionpower.model.limits import Limit, find_limit, useful_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.extremes import Extremes
 from tractionpower.results.key_figures import KeyFigure, voltage_figure
@@ -89,10 +89,11 @@ class VoltageVerdicts:
             yield self._verdict(
                 "longest spell above U_max1", "t_max2", "s", longest, place, float(spell.longest_from_s[k]), longest <= limit
             )
-        if find_limit(self.scenario.limits, self.scenario.supply.system, "u_useful"):
-            yield from self._judge_useful_voltage(self._limit("u_useful").value)
+        useful = useful_limit(self.scenario.limits, self.scenario.supply.system, self.scenario.sizing.useful_voltage.line_class)
+        if useful is not None:
+            yield from self._judge_useful_voltage(useful)
 
-    def _judge_useful_voltage(self, limit: float) -> Iterator[dict[str, Any]]:
+    def _judge_useful_voltage(self, limit: Limit) -> Iterator[dict[str, Any]]:
         trains = self.trains
         zones = [f"zone {zone}" for zone in trains.places.zones]
         names = [f"train {name}" for name in trains.names]
@@ -106,7 +107,7 @@ class VoltageVerdicts:
             if np.isfinite(volts).any():
                 k = int(np.nanargmin(volts))
                 lowest = float(volts[k])
-                yield self._verdict(title, "u_useful", "V", lowest, places[k], np.nan, lowest >= limit - TOLERANCE_V)
+                yield self._verdict(title, limit.name, "V", lowest, places[k], np.nan, lowest >= limit.value - TOLERANCE_V)
 
     def _limit(self, name: str) -> Limit:
         limit = find_limit(self.scenario.limits, self.scenario.supply.system, name)

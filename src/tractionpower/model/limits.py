@@ -55,6 +55,15 @@ def find_limit(limits: Sequence[Limit], system: str, name: str) -> Limit | None:
     return next((limit for limit in limits if limit.system == system and limit.name == name), None)
 
 
+USEFUL_NAMES = {"conventional": "u_useful", "high_speed": "u_useful_high_speed"}
+"""Names of the limits of the mean useful voltage by class of the line."""
+
+
+def useful_limit(limits: Sequence[Limit], system: str, line_class: str) -> Limit | None:
+    """Return the row of the lowest mean useful voltage of a class of lines, or None."""
+    return find_limit(limits, system, USEFUL_NAMES[line_class])
+
+
 def known_systems(limits: Iterable[Limit]) -> list[str]:
     """Return the supply systems that have rows of their own, sorted."""
     return sorted({limit.system for limit in limits} - {ALL_SYSTEMS})

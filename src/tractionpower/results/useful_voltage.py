@@ -7,13 +7,35 @@ evaluation scripts compute under the name of EN 50388:2022, annex B. They differ
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tractionpower.kernels.sums import add_by_group
+
 Array = NDArray[np.float64]
 Numbers = NDArray[np.integer[Any]]
+
+_TIME, _VOLTAGE, _CHARGE, _ENERGY = range(4)
+
+
+class Means(NamedTuple):
+    """Mean useful voltages of trains or zones by both definitions, and of how many trains; all of one length.
+
+    Attributes
+    ----------
+    current_weighted_v, time_mean_v
+        The means [V]; NaN where there is none.
+    trains, left_out
+        Trains that count, and trains that stayed too briefly.
+    """
+
+    current_weighted_v: Array
+    time_mean_v: Array
+    trains: NDArray[np.int64]
+    left_out: NDArray[np.int64]
 
 
 class UsefulVoltage:
@@ -28,10 +50,8 @@ class UsefulVoltage:
     def __init__(self, trains: int, zones: int) -> None:
         # One column more than zones: there go the rows of trains that are in none, which count for the train alone.
         self._shape = (trains, zones + 1)
-        cells = trains * (zones + 1)
-        self._time_s, self._voltage_vs = np.zeros(cells), np.zeros(cells)
-        self._charge_as, self._energy_j = np.zeros(cells), np.zeros(cells)
-        self._tractive_s, self._tractive_vs = np.zeros(trains), np.zeros(trains)
+        self._sums = np.zeros((trains * (zones + 1), 4))
+        self._tractive = np.zeros((trains, 2))
 
     def add(
         self,
@@ -60,25 +80,53 @@ class UsefulVoltage:
         voltage = np.asarray(voltage_v, float)
         weight = np.broadcast_to(np.asarray(weight_s, float), voltage.shape)
         volt_seconds, charge = voltage * weight, np.abs(np.asarray(current_a, float)) * weight
-        # np.add.at adds in the order of the rows, so the sums do not depend on how many rows come at a time.
-        np.add.at(self._time_s, cell, weight)
-        np.add.at(self._voltage_vs, cell, volt_seconds)
-        np.add.at(self._charge_as, cell, charge)
-        np.add.at(self._energy_j, cell, voltage * charge)
-        tractive = np.asarray(tractive, bool)
-        pulling = np.asarray(train, np.int64)[tractive]
-        np.add.at(self._tractive_s, pulling, weight[tractive])
-        np.add.at(self._tractive_vs, pulling, volt_seconds[tractive])
+        add_by_group(self._sums, cell, np.stack([weight, volt_seconds, charge, voltage * charge], axis=1))
+        pulls = np.asarray(tractive, bool)
+        pulling = np.asarray(train, np.int64)[pulls]
+        add_by_group(self._tractive, pulling, np.stack([weight[pulls], volt_seconds[pulls]], axis=1))
+
+    def of_trains(self, shortest_stay_s: float = 0.0) -> Means:
+        """Return the means of all trains that were there for `shortest_stay_s` at least [s]."""
+        time_s, _, charge, energy = self._table.sum(axis=1).T
+        counts = _stays(time_s, shortest_stay_s)
+        weighted = np.where(counts, _ratio(energy, charge), np.nan)
+        mean = np.where(counts, _ratio(self._tractive[:, 1], self._tractive[:, 0]), np.nan)
+        return Means(weighted, mean, counts.astype(np.int64), ((time_s > 0.0) & ~counts).astype(np.int64))
+
+    def of_zones(self, zones: Sequence[NDArray[np.integer[Any]]], shortest_stay_s: float = 0.0) -> Means:
+        """Return the means of zones that are put together of those that were counted.
+
+        Parameters
+        ----------
+        zones
+            Of each the numbers of the zones that it is made of.
+        shortest_stay_s
+            A train that was in it for less time [s] does not count there.
+        """
+        found = [self._of_zone(np.asarray(parts, np.int64), shortest_stay_s) for parts in zones]
+        rows = np.array(found, float).reshape(len(found), 4)
+        return Means(rows[:, 0], rows[:, 1], rows[:, 2].astype(np.int64), rows[:, 3].astype(np.int64))
+
+    def _of_zone(self, parts: NDArray[np.int64], shortest_stay_s: float) -> tuple[float, float, int, int]:
+        time_s, voltage, charge, energy = self._table[:, parts].sum(axis=1).T
+        counts = _stays(time_s, shortest_stay_s)
+        # Every train counts by its mean current in the zone, as in `zone_current_weighted_v`.
+        shares = np.where(counts, _ratio(np.ones(time_s.shape), time_s, without=0.0), 0.0)
+        weighted, mean = _ratio(
+            np.array([(shares * energy).sum(), voltage[counts].sum()]), np.array([(shares * charge).sum(), time_s[counts].sum()])
+        )
+        return float(weighted), float(mean), int(counts.sum()), int(((time_s > 0.0) & ~counts).sum())
 
     @property
     def train_current_weighted_v(self) -> Array:
         """Of each train, sum U |I| dt over sum |I| dt [V]; NaN without current."""
-        return _ratio(self._table(self._energy_j).sum(axis=1), self._table(self._charge_as).sum(axis=1))
+        sums = self._table.sum(axis=1)
+        return _ratio(sums[:, _ENERGY], sums[:, _CHARGE])
 
     @property
     def train_time_mean_v(self) -> Array:
         """Of each train, mean voltage of the steps with traction effort [V]; NaN without one."""
-        return _ratio(self._tractive_vs, self._tractive_s)
+        return _ratio(self._tractive[:, 1], self._tractive[:, 0])
 
     @property
     def zone_current_weighted_v(self) -> Array:
@@ -87,17 +135,25 @@ class UsefulVoltage:
         T_j is the time that train j spent in the zone: every train counts by its mean current there, a slow one no more
         than a fast one.
         """
-        shares = _ratio(np.ones(self._time_s.shape), self._time_s, without=0.0)
-        totals = [self._table(shares * sums)[:, :-1].sum(axis=0) for sums in (self._energy_j, self._charge_as)]
+        time_s = self._table[:, :-1, _TIME]
+        shares = _ratio(np.ones(time_s.shape), time_s, without=0.0)
+        totals = [(shares * self._table[:, :-1, sums]).sum(axis=0) for sums in (_ENERGY, _CHARGE)]
         return _ratio(*totals)
 
     @property
     def zone_time_mean_v(self) -> Array:
         """Of each zone, mean voltage of all trains and steps in it, with and without traction effort [V]; NaN without any."""
-        return _ratio(*(self._table(sums)[:, :-1].sum(axis=0) for sums in (self._voltage_vs, self._time_s)))
+        return _ratio(*(self._table[:, :-1, sums].sum(axis=0) for sums in (_VOLTAGE, _TIME)))
 
-    def _table(self, cells: Array) -> Array:
-        return cells.reshape(self._shape)
+    @property
+    def _table(self) -> Array:
+        """The sums by train, zone and kind."""
+        return self._sums.reshape(*self._shape, 4)
+
+
+def _stays(time_s: Array, shortest_s: float) -> NDArray[np.bool_]:
+    """Return which trains were there, and long enough; sums of steps carry roundings."""
+    return np.asarray((time_s > 0.0) & (time_s >= shortest_s * (1.0 - 1e-9)))
 
 
 def _ratio(above: Array, below: Array, without: float = np.nan) -> Array:
