@@ -1,0 +1,247 @@
+"""Which outages there are: each device by itself, at each grid voltage, and pairs of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+from tractionpower.errors import InputError, Problem
+from tractionpower.io.wording import did_you_mean
+from tractionpower.model.base import format_time
+from tractionpower.model.contingency import OUTAGE_KINDS
+from tractionpower.model.limits import common_limits
+from tractionpower.model.scenario import Scenario
+from tractionpower.model.supply import SectionCabin, Substation
+from tractionpower.studies.contingency.line_sections import LineSection, find_line_sections
+from tractionpower.studies.contingency.moves import Move, Setting, changes_of, grid_changes
+from tractionpower.studies.runner.case import Case
+from tractionpower.supply.site import survey
+
+GRIDS = ("normal", "low", "high")
+BASE = "base"
+
+
+@dataclass(frozen=True, slots=True)
+class Outage:
+    """Something that is out.
+
+    Attributes
+    ----------
+    kind, subject, mode
+        Columns of table ``cases``.
+    moves
+        What it moves.
+    names
+        By which a choice of devices may mean it.
+    takes
+        What is out with it; two outages of which this overlaps are no pair.
+    """
+
+    kind: str
+    subject: str
+    mode: str
+    moves: tuple[Move, ...]
+    names: frozenset[str]
+    takes: frozenset[str]
+
+    @property
+    def id(self) -> str:
+        """Identifier of its case at normal grid voltage."""
+        return f"{self.subject} {self.mode}"
+
+
+@dataclass(frozen=True, slots=True)
+class OutageList:
+    """The cases of a study of outages.
+
+    Attributes
+    ----------
+    cases
+        The base cases, then the outages at one grid voltage after the other.
+    notes
+        What is not looked at, and why.
+    """
+
+    cases: tuple[Case, ...]
+    notes: tuple[str, ...]
+
+
+def outages(scenario: Scenario, pairs: bool = False) -> tuple[Case, ...]:
+    """Return the cases of a study of outages; see `find_outages`."""
+    return find_outages(scenario, pairs=pairs).cases
+
+
+def find_outages(scenario: Scenario, *, pairs: bool = False, grids: Sequence[str] | None = None) -> OutageList:
+    """Return the cases that `scenario.contingency` asks for: base cases first, then outages one by one, then pairs.
+
+    Parameters
+    ----------
+    scenario
+        What is looked at; it has passed the checks.
+    pairs
+        Whether all pairs of different devices are out, too.
+    grids
+        Grid voltages of all cases; left out: those of the study, and for pairs the normal one.
+
+    Raises
+    ------
+    InputError
+        If a device is named that does not exist, or outages begin after the end of the clock.
+    """
+    finder = _Finder(scenario)
+    every = list(finder.every())
+    chosen = _chosen(scenario, every)
+    wanted = grids or scenario.contingency.grid_voltages
+    factors = dict(_grid_factors(scenario, sorted({"normal", *wanted}, key=GRIDS.index), finder.notes))
+    found = [Case(_at(BASE, grid), _grid(scenario, factors[grid]), "base", "", "", grid, True) for grid in factors]
+    wanted = [grid for grid in factors if grid in wanted]
+    found += [_case(scenario, (outage,), grid, factors[grid]) for grid in wanted for outage in chosen]
+    if pairs:
+        of_pairs = wanted if grids is not None or "normal" not in wanted else ["normal"]
+        couples = [pair for pair in combinations(chosen, 2) if pair[0].takes.isdisjoint(pair[1].takes)]
+        found += [_case(scenario, pair, grid, factors[grid]) for grid in of_pairs for pair in couples]
+    return OutageList(tuple(found), tuple(finder.notes))
+
+
+def _case(scenario: Scenario, out: tuple[Outage, ...], grid: str, factor: float) -> Case:
+    changes = (*_grid(scenario, factor), *changes_of(scenario, (move for outage in out for move in outage.moves)))
+    name, subject, mode = (" + ".join(getattr(outage, what) for outage in out) for what in ("id", "subject", "mode"))
+    return Case(_at(name, grid), changes, out[0].kind if len(out) == 1 else "pair", subject, mode, grid)
+
+
+def _at(name: str, grid: str) -> str:
+    return name if grid == "normal" else f"{name}, grid {grid}"
+
+
+def _grid(scenario: Scenario, factor: float) -> tuple[str, ...]:
+    return () if factor == 1.0 else grid_changes(scenario, factor)
+
+
+def _grid_factors(scenario: Scenario, grids: Iterable[str], notes: list[str]) -> Iterator[tuple[str, float]]:
+    """Yield each grid voltage with its value as a multiple of the declared one."""
+    limits, wish = common_limits(scenario.limits, scenario.supply.system, "grid_"), scenario.contingency
+    given = {"normal": 1.0, "low": wish.low_grid_voltage_pu, "high": wish.high_grid_voltage_pu}
+    for grid in grids:
+        row, factor = limits.get(f"grid_{grid}"), given[grid]
+        if factor is None and row is not None:
+            factor = row.value
+        if factor is None:
+            notes.append(f"{grid} grid voltage: left out, for the limits table has no row grid_{grid}")
+        elif factor == 1.0 and grid != "normal":
+            notes.append(f"{grid} grid voltage: left out, for it is the normal one")
+        else:
+            yield grid, factor
+
+
+def _chosen(scenario: Scenario, every: Sequence[Outage]) -> list[Outage]:
+    wish = scenario.contingency
+    if wish.devices is not None:
+        known = {name for outage in every for name in outage.names}
+        known |= {station.id for station in scenario.supply.substations} | {cabin.id for cabin in scenario.supply.section_cabins}
+        problems = [
+            Problem(
+                "unknown_device", f"contingency.devices[{k}]", f"there is no device {name!r} that could be out",
+                "a substation, section cabin, feeder ('A 1 low_km') or contact line ('track 1 km 0-10.8')",
+                did_you_mean(name, sorted(known)),
+            )
+            for k, name in enumerate(wish.devices) if name not in known
+        ]  # fmt: skip
+        if problems:
+            raise InputError(problems)
+        every = [outage for outage in every if not outage.names.isdisjoint(wish.devices)]
+    return [outage for kind in OUTAGE_KINDS if kind in wish.kinds for outage in every if outage.kind == kind]
+
+
+class _Finder:
+    """Finds all outages, whatever is chosen of them."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario, self.supply = scenario, scenario.supply
+        self.begins_s = scenario.contingency.begins
+        if self.begins_s is not None and self.begins_s >= scenario.clock.end:
+            found = f"outages that begin at {format_time(self.begins_s)}, after the end of the run"
+            raise InputError([Problem("no_outage", "contingency.begins", found, f"before {format_time(scenario.clock.end)}")])
+        site = survey(scenario.supply, scenario.line)
+        self.feeders = {station.id: site.feeders(station) for station in site.stations}
+        self.open_rows = {row.id for row in scenario.supply.feeders if row.state == "open"}
+        self.moving = {event.device for event in scenario.supply.switch_events}
+        self.substations = sorted(scenario.supply.substations, key=lambda station: station.id)
+        self.cabins = sorted(scenario.supply.section_cabins, key=lambda cabin: cabin.id)
+        self.notes: list[str] = []
+
+    def every(self) -> Iterator[Outage]:
+        """Yield all outages in their order."""
+        for station in self.substations:
+            yield from self._unit(station)
+        wish = self.scenario.contingency
+        for station in self.substations:
+            yield from self._station("substation", station, wish.substation_modes, ("bypassed", "open"))
+        for station in self.substations:
+            yield from self._feeders(station)
+        for cabin in self.cabins:
+            yield from self._station("section_cabin", cabin, wish.cabin_modes, ("bypassed", "open"))
+        for section in find_line_sections(self.scenario):
+            yield from self._section(section)
+
+    def _skip(self, kind: str, what: str) -> None:
+        if kind in self.scenario.contingency.kinds:
+            self.notes.append(what)
+
+    def _set(self, device: str, value: str | int, field: str = "state") -> Move:
+        return Move(device, ((self.begins_s, field, value),))
+
+    def _unit(self, station: Substation) -> Iterator[Outage]:
+        units, name = station.units if station.units_in_service is None else station.units_in_service, f"{station.id} unit"
+        if not units or station.state != "in_service":
+            self._skip("unit", f"{name}: none is in service")
+            return
+        names, takes = frozenset({station.id, name}), frozenset({name})
+        if station.reserve_units:
+            if station.reserve_after_s == 0.0:
+                self._skip("unit", f"{name}: its reserve feeds at once, so nothing changes")
+                return
+            yield Outage("unit", name, f"{units - 1} of {units} in service, reserve after {station.reserve_after_s:g} s",
+                         (Move(station.id, self._until_reserve(station, units)),), names, takes)  # fmt: skip
+            return
+        if units == 1:  # no unit is left: the same as a substation whose rectifiers are out
+            yield Outage("unit", name, "rectifiers_out", (self._set(station.id, "rectifiers_out"),), names, takes)
+            return
+        move = self._set(station.id, units - 1, "units_in_service")
+        yield Outage("unit", name, f"{units - 1} of {units} in service", (move,), names, takes)
+
+    def _until_reserve(self, station: Substation, units: int) -> tuple[Setting, ...]:
+        from_s = self.scenario.clock.start if self.begins_s is None else self.begins_s
+        again_s = from_s + station.reserve_after_s
+        return (from_s, "units_in_service", units - 1), (again_s, "units_in_service", units)
+
+    def _station(
+        self, kind: str, station: Substation | SectionCabin, modes: Iterable[str], out: Sequence[str]
+    ) -> Iterator[Outage]:
+        takes = frozenset({station.id, f"{station.id} unit", *(" ".join((station.id, *key)) for key in self.feeders[station.id])})
+        for mode in modes:
+            if station.state in (*out, mode):
+                self._skip(kind, f"{station.id} {mode}: it is {station.state} already")
+                continue
+            yield Outage(kind, station.id, mode, (self._set(station.id, mode),), frozenset({station.id}), takes)
+
+    def _feeders(self, station: Substation) -> Iterator[Outage]:
+        for key in self.feeders[station.id]:
+            name = " ".join((station.id, *key))
+            if name in self.open_rows or station.state in ("bypassed", "open"):
+                self._skip("feeder", f"{name}: it is open already")
+                continue
+            yield Outage("feeder", name, "open", (self._set(name, "open"),), frozenset({station.id, name}), frozenset({name}))
+
+    def _section(self, section: LineSection) -> Iterator[Outage]:
+        if not section.closed:
+            self._skip("contact_line", f"{section.name}: nothing feeds it")
+            return
+        moved = [device for device in section.ends if device in section.closed or self._moves(device)]
+        moves = tuple(self._set(device, "open") for device in moved)
+        takes = frozenset({section.name, *moved})
+        yield Outage("contact_line", section.name, "dead", moves, frozenset({section.name}), takes)
+
+    def _moves(self, device: str) -> bool:
+        """Tell whether a feeder, switch or section point is moved in the run, or its substation or section cabin is."""
+        return device in self.moving or device.rsplit(" ", 2)[0] in self.moving
