@@ -28,6 +28,7 @@ SIZING_TABLES: dict[str, tuple[Column, ...]] = {
         column("rated_current_a", "Rated current; empty without one."),
         column("duty_class", "Duty class, or how long currents are averaged for.", "text"),
         *_USE,
+        column("mean_a", "Highest sliding mean of the current over the window, regardless of its direction."),
         column("ruling", "Whether this window of the device has the highest utilisation.", "bool"),
         column("met", "Whether the utilisation is permitted; empty without a rating.", "text"),
         column("left_a", "permitted_a less load_a."),
@@ -44,6 +45,7 @@ SIZING_TABLES: dict[str, tuple[Column, ...]] = {
         column("track", "Track that it is on.", "text"),
         column("position_km", "Where it is.", "f8"),
         column("part_a", "Part of the peak that falls away without it, by superposition."),
+        column("remainder_a", "What of the peak no train and no load causes: unequal no-load voltages of the substations."),
     ),
     "breakers": (
         _DEVICE,

@@ -92,11 +92,10 @@ class DeviceCurrents:
         self.devices = devices_of(tables)
         self.columns = columns_of(self.devices)
         self._commons = _with_common_return(tables)
-        number = {station.id: k for k, station in enumerate(tables.substations)}
-        self._drained = np.zeros((len(tables.links), len(number)))  # 1 where a return feeder of one track is that of a station
-        for k, link in enumerate(tables.links):
-            if link.kind == "return":
-                self._drained[k, number[link.station]] = 1.0
+        self._drains = [
+            [k for k, link in enumerate(tables.links) if link.kind == "return" and link.station == tables.substations[n].id]
+            for n in self._commons
+        ]
 
     def __call__(self, rows: Buffers, supply: SupplyTables) -> Floats:
         """Return the currents with their signs [A], shape (steps, columns); of a unit 0 where none is in service.
@@ -110,9 +109,17 @@ class DeviceCurrents:
         """
         source_a = np.nan_to_num(rows.source_a)
         parts = [source_a / units_in_service(supply), source_a, rows.link_a]
-        if len(self._commons):
-            parts.append(source_a[:, self._commons] - (rows.link_a @ self._drained)[:, self._commons])
+        parts.append(source_a[:, self._commons] - sums_of_columns(rows.link_a, self._drains))
         return np.concatenate([*parts, rows.gauge_a], axis=1)
+
+
+def sums_of_columns(values: Floats, groups: Sequence[Sequence[int]]) -> Floats:
+    """Return the sums of groups of columns, shape (rows, groups), added in their order: those of a row depend on it alone."""
+    sums = np.zeros((len(values), len(groups)))
+    for number, group in enumerate(groups):
+        for column in group:
+            sums[:, number] += values[:, column]
+    return sums
 
 
 def units_in_service(supply: SupplyTables) -> Floats:
@@ -121,11 +128,11 @@ def units_in_service(supply: SupplyTables) -> Floats:
     return np.asarray(np.maximum(np.fromiter(counts, float), 1.0))
 
 
-def _with_common_return(tables: SupplyTables) -> Numbers:
+def _with_common_return(tables: SupplyTables) -> list[int]:
     """Return the substations one of whose tracks has no return feeder of its own."""
     fed, drained = ({(link.station, link.track) for link in tables.links if link.kind == kind} for kind in ("feeder", "return"))
     common = {station for station, _ in fed - drained}
-    return np.array([k for k, station in enumerate(tables.substations) if station.id in common], np.int64)
+    return [k for k, station in enumerate(tables.substations) if station.id in common]
 
 
 def _sections(sections: Sequence[Section]) -> Iterator[Device]:

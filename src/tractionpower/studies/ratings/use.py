@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tractionpower.results.device_loads import DeviceLoads
 from tractionpower.supply.devices import Device, columns_of
@@ -125,7 +126,7 @@ class _Loads:
         self.loads, self.run_from_s = loads, from_s
         self.rms_a, self.best, self.from_s = loads.rms_a, loads.best_rms, loads.from_s
 
-    def of(self, columns: np.ndarray[tuple[int], np.dtype[np.int64]], window_s: float) -> tuple[float, float]:
+    def of(self, columns: NDArray[np.int64], window_s: float) -> tuple[float, float]:
         """Return the greatest load of some columns over a window [A], and when it begins [s]."""
         if window_s == WHOLE_RUN or window_s > self.loads.seconds * (1.0 + _ROUNDING):
             return float(self.rms_a[columns].max()), self.run_from_s

@@ -1,0 +1,87 @@
+"""Table ``demand``: what supply points take from the feeding grid, in quarters of an hour by the clock."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.kernels.block_tables import Buffers
+from tractionpower.model.scenario import Scenario
+from tractionpower.studies.ratings.counted import counted, counts_from
+from tractionpower.supply.characteristics import dissipative_resistance
+from tractionpower.supply.compile import SupplyTables
+from tractionpower.supply.devices import sums_of_columns
+
+Floats = NDArray[np.float64]
+
+PERIOD_S = 900.0
+"""Length of a period of the clock [s]."""
+
+_NEAR = 1e-6
+"""Share of a step by which a period may miss its whole length."""
+
+
+class DemandWatch:
+    """Sums up what each supply point takes in each quarter of an hour by the clock.
+
+    Substations of the same supply point are one customer. The power is U I at the busbar and, where it is known, the heat of
+    transformers and rectifiers; what is fed back counts against it.
+
+    Parameters
+    ----------
+    scenario
+        What runs.
+    supply
+        Its supply.
+
+    Attributes
+    ----------
+    points
+        Supply points, sorted.
+    contract_kw
+        Contracted power of each; NaN without one.
+    """
+
+    def __init__(self, scenario: Scenario, supply: SupplyTables) -> None:
+        clock = scenario.clock
+        self._from_s, self._step_s = counts_from(clock), clock.step_s
+        owners = [station.supply_point or station.id for station in supply.substations]
+        self.points = tuple(sorted(set(owners)))
+        self._stations = [[k for k, owner in enumerate(owners) if owner == point] for point in self.points]
+        given = [(owner, s.contract_power_kw) for owner, s in zip(owners, supply.substations, strict=True)]
+        self.contract_kw = [
+            next((power for owner, power in given if owner == point and power is not None), math.nan) for point in self.points
+        ]
+        self._first = math.floor(self._from_s / PERIOD_S)
+        periods = max(0, math.ceil(clock.end / PERIOD_S) - self._first)
+        self._energy_j = np.zeros((periods + 1, len(self.points)))  # one more: the last step may reach beyond the clock
+        self._covered_s = np.zeros(periods + 1)
+
+    def __call__(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
+        """Take the rows of some steps."""
+        time_s, rows = counted(self._from_s, time_s, rows)
+        heat_ohm = np.array([dissipative_resistance(station) or 0.0 for station in supply.substations])
+        own = np.nan_to_num(rows.source_v) * rows.source_a + heat_ohm * rows.source_a**2
+        watts = sums_of_columns(own, self._stations)
+        at = np.floor(time_s / PERIOD_S + _NEAR * self._step_s / PERIOD_S).astype(np.int64)
+        here_s = np.minimum((at + 1) * PERIOD_S - time_s, self._step_s)  # of a step over a boundary the part before it
+        for number, seconds in ((at - self._first, here_s), (at - self._first + 1, self._step_s - here_s)):
+            some = seconds > 0.0
+            np.add.at(self._energy_j, number[some], watts[some] * seconds[some, np.newaxis])
+            np.add.at(self._covered_s, number[some], seconds[some])
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Yield the rows of table ``demand``: supply points by quarters of an hour that the run covers as a whole."""
+        whole = np.flatnonzero(self._covered_s > PERIOD_S - 2.0 * _NEAR * self._step_s)
+        for k, (point, contract_kw) in enumerate(zip(self.points, self.contract_kw, strict=True)):
+            for number in whole.tolist():
+                power_kw = self._energy_j[number, k] / self._covered_s[number] / 1000.0
+                met = "" if math.isnan(contract_kw) else "yes" if power_kw <= contract_kw else "no"
+                yield {
+                    "supply_point": point, "from_s": (self._first + number) * PERIOD_S, "power_kw": power_kw,
+                    "contract_power_kw": contract_kw, "met": met,
+                }  # fmt: skip
