@@ -12,12 +12,14 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from tractionpower.cosimulation.device_recorder import DeviceRecorder
 from tractionpower.cosimulation.lateness import TrainLateness, lateness_of
 from tractionpower.cosimulation.places import Places
 from tractionpower.cosimulation.quiet import QuietRun
 from tractionpower.kernels.block_tables import Buffers, take_rows
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.useful_voltage import UsefulVoltage
+from tractionpower.studies.cases.devices import device_figures, device_uses, devices_table
 from tractionpower.studies.cases.energy import EnergyWatch
 from tractionpower.studies.cases.rails import RailWatch
 from tractionpower.studies.cases.voltages import VoltageWatch, case_table, coded
@@ -39,13 +41,19 @@ def measure(scenario: Scenario) -> CaseResult:
     """
     run = QuietRun(scenario)
     watch = CaseWatch(run)
-    run.watches.append(watch)
+    devices = DeviceRecorder(scenario, run.compiled.supply)
+    run.watches += [watch, devices]
     run.execute()
     late = lateness_of(run)
     figures = {**_status(run, watch), **watch.figures(), **_train_figures(late, scenario.feasibility.tolerance_s)}
     figures |= {"trips": _trips(run), "flagged_steps": run.flagged_steps}
-    figures |= {"utilisation_percent": NAN, "utilisation_device": "", "overloaded": 0}
-    tables = {"case_profile": watch.voltages.profile(), "case_rails": watch.rails.profile()}
+    used = device_uses(scenario, devices)
+    figures |= device_figures(used)
+    tables = {
+        "case_devices": devices_table(used, devices),
+        "case_profile": watch.voltages.profile(),
+        "case_rails": watch.rails.profile(),
+    }
     tables["case_trains"] = trains_table(late, scenario.feasibility.tolerance_s)
     return CaseResult(figures, tables)
 

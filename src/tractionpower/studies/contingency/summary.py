@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from tractionpower.model.contingency import OUTAGE_KINDS
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.studies.cases.judgement import Check, failures
 from tractionpower.studies.contingency.envelope import DeviceEnvelope
-from tractionpower.studies.contingency.outages import BASE
+from tractionpower.studies.contingency.outages import BASE, GRIDS
 from tractionpower.studies.runner.outcomes import CasesRun
 
 Row = Mapping[str, Any]
+
+KINDS = (*OUTAGE_KINDS, "pair")
 
 MOST_TOLD = 30
 """Worst cases, and devices, that are told; the tables have all."""
@@ -87,7 +90,7 @@ def _by_kind(outages: Sequence[Row]) -> list[dict[str, Any]]:
         volts = row["lowest_voltage_v"]
         if volts is not None and (group["lowest_voltage_v"] is None or volts < group["lowest_voltage_v"]):
             group |= {"lowest_voltage_v": volts, "case": row["case"]}
-    return list(found.values())
+    return [found[key] for key in sorted(found, key=lambda key: (GRIDS.index(key[1]), KINDS.index(key[0])))]
 
 
 def _failing_devices(devices: DeviceEnvelope) -> list[dict[str, Any]]:
@@ -118,10 +121,8 @@ def figures_of(checks: Sequence[Check], rows: Sequence[Row]) -> list[dict[str, A
         row = check.worst(rows)
         if row is not None:
             said = check.verdict(row)
-            definition = f"worst of all cases: {check.name}"
-            figures.append(
-                KeyFigure(f"worst_{check.figure}", said["value"], said["place"], said["time"], definition, check.status)
-            )
+            what = f"{check.name}, worst of all cases"
+            figures.append(KeyFigure(check.figure, said["value"], said["place"], said["time"], what, check.status))
     known = [row for row in rows if row.get("rail_potential_v") is not None]
     if known:
         worst = max(known, key=lambda row: row["rail_potential_v"])

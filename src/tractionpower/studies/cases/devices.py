@@ -1,0 +1,53 @@
+"""What the devices of a case carry, of what they can bear."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from tractionpower.cosimulation.device_recorder import DeviceRecorder
+from tractionpower.model.scenario import Scenario
+from tractionpower.studies.cases.voltages import case_table, coded
+from tractionpower.studies.ratings.use import Use, ruling, uses
+from tractionpower.supply.ratings import ratings_of
+
+NAN = float("nan")
+
+
+def device_uses(scenario: Scenario, recorder: DeviceRecorder) -> tuple[Use, ...]:
+    """Return the use of each device over the window that rules it, in the order of the devices."""
+    from_s = scenario.clock.start + (scenario.clock.warm_up or 0.0)
+    ratings = ratings_of(scenario, recorder.devices)
+    return ruling(uses(recorder.devices, ratings, recorder.loads, from_s, scenario.sizing.utilisation_percent))
+
+
+def device_figures(found: tuple[Use, ...]) -> dict[str, Any]:
+    """Return the key figures of the devices of a case."""
+    rated = [use for use in found if np.isfinite(use.utilisation_percent)]
+    worst = max(rated, key=lambda use: use.utilisation_percent, default=None)
+    return {
+        "utilisation_percent": NAN if worst is None else worst.utilisation_percent,
+        "utilisation_device": "" if worst is None else worst.device.id,
+        "overloaded": sum(use.met == "no" for use in found),
+    }
+
+
+def devices_table(found: tuple[Use, ...], recorder: DeviceRecorder) -> pa.Table:
+    """Return table ``case_devices`` without the column case; of a section the end that carries more."""
+    loads, count = recorder.loads, range(len(found))
+    peaks, means = [recorder.peak_of(k) for k in count], [recorder.of(k) for k in count]
+    return case_table(
+        "case_devices",
+        {
+            "device": coded([use.device.id for use in found]),
+            "kind": coded([use.device.kind for use in found]),
+            "peak_a": loads.peak_a[peaks],
+            "peak_s": loads.peak_s[peaks],
+            "rms_a": loads.rms_a[means],
+            **{name: [getattr(use, name) for use in found] for name in ("window_s", "load_a", "permitted_a")},
+            **{name: [getattr(use, name) for use in found] for name in ("utilisation_percent", "from_s")},
+            "met": coded([use.met for use in found]),
+        },
+    )
