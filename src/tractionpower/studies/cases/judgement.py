@@ -7,15 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from tractionpower.model.base import format_time
-from tractionpower.model.limits import common_limits
+from tractionpower.model.limits import USEFUL_NAMES, common_limits
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.spells import TOLERANCE_V
 
 Row = Mapping[str, Any]
 """A row of table ``cases``."""
-
-USEFUL = {"conventional": "u_useful", "high_speed": "u_useful_high_speed"}
-"""Rows of the limits table by class of the line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +87,7 @@ def _where(figure: str, row: Row) -> str:
 def checks_of(scenario: Scenario) -> tuple[Check, ...]:
     """Return what the cases of a study are held against; limits that the limits table does not have are left out."""
     limits = common_limits(scenario.limits, scenario.supply.system, "u_")
-    useful = USEFUL[scenario.sizing.useful_voltage.line_class]
+    useful = USEFUL_NAMES[scenario.sizing.useful_voltage.line_class]
     volts = [
         ("low voltage", "lowest voltage", "lowest_voltage_v", "u_min2", True),
         ("high voltage", "highest voltage", "highest_voltage_v", "u_max2", False),

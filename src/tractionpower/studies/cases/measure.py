@@ -16,9 +16,9 @@ from tractionpower.cosimulation.device_recorder import DeviceRecorder
 from tractionpower.cosimulation.lateness import TrainLateness, lateness_of
 from tractionpower.cosimulation.places import Places
 from tractionpower.cosimulation.quiet import QuietRun
+from tractionpower.cosimulation.useful_voltage_recorder import UsefulVoltageRecorder
 from tractionpower.kernels.block_tables import Buffers, take_rows
 from tractionpower.model.scenario import Scenario
-from tractionpower.results.useful_voltage import UsefulVoltage
 from tractionpower.studies.cases.devices import device_figures, device_uses, devices_table
 from tractionpower.studies.cases.energy import EnergyWatch
 from tractionpower.studies.cases.rails import RailWatch
@@ -75,11 +75,11 @@ class CaseWatch:
     def __init__(self, run: QuietRun) -> None:
         scenario, supply = run.scenario, run.compiled.supply
         clock = scenario.clock
-        self._from_s, self._step_s = clock.start + (clock.warm_up or 0.0), clock.step_s
-        self._places, self._trains = Places(scenario, run.movement), run.movement.names
+        self._from_s = clock.start + (clock.warm_up or 0.0)
+        self._places = Places(scenario, run.movement)
         self.voltages, self.rails = VoltageWatch(supply, self._places), RailWatch(supply, self._places)
         self.energy = EnergyWatch(supply, clock.step_s)
-        self._useful = UsefulVoltage(len(self._trains), len(self._places.zones))
+        self._useful = UsefulVoltageRecorder(scenario, run.movement, self._places, whole_run_only=True)
 
     def __call__(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
         """Take the rows of some steps."""
@@ -92,40 +92,29 @@ class CaseWatch:
         self.voltages.add(time_s, rows, supply, placed)
         self.rails.add(rows, placed)
         self.energy.add(time_s, rows, supply)
-        live = trains["voltage_v"] != 0.0
-        zone, shown = self._places.zone(placed)[live], trains[live]
-        tractive = shown["traction_n"] > 0.0
-        self._useful.add(shown["train"], zone, shown["voltage_v"], shown["current_a"], tractive, self._step_s)
+        self._useful.add(trains, placed)
 
     def figures(self) -> dict[str, Any]:
         """Return the key figures of voltages, rail potentials and energies."""
         lowest, greatest = self.voltages.lowest, self.rails.greatest
-        zone_v, zone = _least(self._useful.zone_current_weighted_v, self._places.zones)
-        train_v, train = _least(self._useful.train_current_weighted_v, self._trains)
+        means = self._useful.means()[0]
+        zone, train = self._useful.lowest("zone", means=means), self._useful.lowest("train", means=means)
         return {
             "lowest_voltage_v": lowest[0],
             "lowest_voltage_track": lowest[1],
             "lowest_voltage_km": lowest[2],
             "lowest_voltage_s": lowest[3],
             "highest_voltage_v": float(self.voltages.highest_v),
-            "useful_zone_v": zone_v,
-            "useful_zone": zone,
-            "useful_train_v": train_v,
-            "useful_train": train,
+            "useful_zone_v": zone.value_v,
+            "useful_zone": zone.subject,
+            "useful_train_v": train.value_v,
+            "useful_train": train.subject,
             "rail_potential_v": greatest[0],
             "rail_potential_km": greatest[1],
             "energy_kwh": self.energy.busbar_kwh,
             "line_loss_kwh": self.energy.line_loss_kwh,
             "highest_demand_kw": self.energy.highest_demand_kw,
         }
-
-
-def _least(volts: Floats, names: list[str] | tuple[str, ...]) -> tuple[float, str]:
-    """Return the lowest of some voltages [V] and whose it is; NaN where there is none."""
-    if not np.isfinite(volts).any():
-        return NAN, ""
-    k = int(np.nanargmin(volts))
-    return float(volts[k]), names[k]
 
 
 def _status(run: QuietRun, watch: CaseWatch) -> dict[str, str]:
