@@ -1,4 +1,4 @@
-"""All reports of a run, from its results alone: after the run, or later again."""
+"""All reports of a run or of a study of outages, from its results alone: after the run, or later again."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ WORKBOOK = "report.xlsx"
 
 
 def write_reports(results: Results, scenario: Scenario, folder: Path) -> list[Path]:
-    """Write figures and workbook of a run into `folder` and return their paths.
+    """Write figures and workbook of a run, or of a study of outages, into `folder` and return their paths.
 
     One report that cannot be written does not hinder the others; tables are not touched.
 
@@ -23,14 +23,15 @@ def write_reports(results: Results, scenario: Scenario, folder: Path) -> list[Pa
     OutputError
         If a report cannot be written; all that hinders is told.
     """
-    from tractionpower.reporting.figures import write_figures  # noqa: PLC0415 - matplotlib and openpyxl are slow to import
+    from tractionpower.reporting.figures import write_figures, write_outage_figures  # noqa: PLC0415 - matplotlib and openpyxl are slow to import
     from tractionpower.reporting.workbook import write_workbook  # noqa: PLC0415
 
     paths: list[Path] = []
     hindrances = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        paths += write_figures(results, scenario, folder / FIGURES)
+        write = write_outage_figures if results.run.get("kind") == "contingency" else write_figures
+        paths += write(results, scenario, folder / FIGURES)
     except OSError as error:
         hindrances.append(f"figures cannot be written into {folder / FIGURES}: {reason_of(error)}")
     try:

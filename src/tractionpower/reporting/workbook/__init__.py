@@ -1,4 +1,4 @@
-"""The workbook of a run, for people: cover with verdicts in words, inputs as used, tables, native charts, definitions."""
+"""The workbook of a run or of a study of outages, for people: cover with verdicts in words, inputs as used, tables, native charts, definitions."""
 # ruff: noqa: PLC0415 - openpyxl is imported when a workbook is written
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from tractionpower.results.results import Results
 
 
 def write_workbook(results: Results, scenario: Scenario, path: Path) -> Path:
-    """Write the workbook of a run and return where it is.
+    """Write the workbook of a run, or of a study of outages, and return where it is.
 
     The file gets its name when it is complete. Where another program holds the earlier one open, the new one stands
     beside it, with ``.new`` before its suffix.
@@ -24,6 +24,7 @@ def write_workbook(results: Results, scenario: Scenario, path: Path) -> Path:
     path
         Name of the file, ``report.xlsx``.
     """
-    from tractionpower.reporting.workbook.book import build, save_as
+    from tractionpower.reporting.workbook import book, outage_book
 
-    return save_as(build(results, scenario), path)
+    build = outage_book.build if results.run.get("kind") == "contingency" else book.build
+    return book.save_as(build(results, scenario), path)

@@ -14,6 +14,7 @@ from tractionpower.reporting.workbook import (
     cover,
     definitions,
     delays,
+    device_loads,
     energy,
     events,
     extracts,
@@ -23,11 +24,14 @@ from tractionpower.reporting.workbook import (
     inputs,
     limits,
     lost_time,
+    peaks,
+    ratings,
     remedies,
     return_circuit,
     sections,
     substations,
     trains,
+    useful_voltage,
 )
 from tractionpower.reporting.workbook.cells import shorten
 from tractionpower.reporting.workbook.facts import Facts
@@ -47,6 +51,8 @@ def build(results: Results, scenario: Scenario) -> Any:
     front = book.page("Cover", shorten(book.facts.study, cover.TITLE_LENGTH))
     for add in (feasibility.add, remedies.add, delays.add, sections.add, lost_time.add):
         add(book)
+    for add in (ratings.add, peaks.add, device_loads.add, useful_voltage.add):
+        add(book)
     for add in (limits.add, trains.add, calls.add, substations.add, feeders.add, return_circuit.add, energy.add, figures.add):
         add(book)
     charted = book.page("Charts", "Charts")
@@ -58,7 +64,7 @@ def build(results: Results, scenario: Scenario) -> Any:
     for page in book.pages:
         page.finish()
     workbook.remove(blank)
-    _describe(workbook, book.facts)
+    describe(workbook, book.facts)
     return workbook
 
 
@@ -78,7 +84,8 @@ def save_as(workbook: Any, path: Path) -> Path:
     return path
 
 
-def _describe(workbook: Any, facts: Facts) -> None:
+def describe(workbook: Any, facts: Facts) -> None:
+    """Give the document its properties."""
     properties = workbook.properties
     properties.title, properties.creator = shorten(facts.study, TITLE_LENGTH), "tractionpower"
     properties.subject = "Co-simulation of traction power supply and train movement"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from datetime import datetime
 from typing import Any
 
@@ -15,6 +15,7 @@ from tractionpower.reporting.workbook.facts import KNOWN_AS, STATES, Facts, limi
 from tractionpower.reporting.workbook.feasibility import verdict_in_words
 from tractionpower.reporting.workbook.limits import verdict_word
 from tractionpower.reporting.workbook.page import LINE_POINTS, Book, Page
+from tractionpower.reporting.workbook.ratings import one_for_each, ratings_in_words
 
 LABEL_WIDTH, TEXT_WIDTH = 28.0, 100.0
 
@@ -35,11 +36,11 @@ Said = tuple[str, str, str]
 """Label, text, and style of the text."""
 
 
-def fill_in(book: Book, page: Page) -> None:
-    """Write the cover, when all other sheets are there."""
+def fill_in(book: Book, page: Page, groups: Sequence[Callable[[Facts], Iterable[Said]]] = ()) -> None:
+    """Write the cover, when all other sheets are there; `groups` tell what stands on it, none: what that of a run tells."""
     facts = book.facts
     page.widen(LABEL_WIDTH, TEXT_WIDTH)
-    for group in (_head, _verdicts, _trust):
+    for group in groups or (_head, _verdicts, _trust):
         page.next += 1
         for label, text, style in group(facts):
             _say(page, label, text, style)
@@ -123,6 +124,10 @@ def _verdicts(facts: Facts) -> Iterator[Said]:
     if facts.feasibility is not None:
         sentence, style = verdict_in_words(facts.feasibility)
         yield "Feasibility", sentence, f"big {style}"
+    ratings = facts.table("ratings")
+    if len(ratings):
+        sentence, style = ratings_in_words(one_for_each(ratings), facts.scenario.sizing.utilisation_percent)
+        yield "Ratings", sentence, f"big {style}"
     verdicts = facts.verdicts
     violated = [verdict for verdict in verdicts if verdict["met"] is False]
     if violated:

@@ -1,0 +1,264 @@
+"""Outages as reports see them: the cases along the line, what each fails at, the worst of a case over the grid voltages."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from tractionpower.model.limits import Limit, find_limit
+from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.places import LinePlaces
+from tractionpower.results.results import Results
+
+KIND_WORDS = {
+    "base": "nothing is out",
+    "unit": "rectifier unit",
+    "substation": "substation",
+    "feeder": "feeder",
+    "section_cabin": "section cabin",
+    "contact_line": "contact line",
+    "pair": "pair",
+    "variant": "variant",
+}
+"""Kinds of cases in words, in the order of the sheets."""
+
+KINDS_WORDS = {
+    "base": "Nothing is out",
+    "unit": "Rectifier units",
+    "substation": "Substations",
+    "feeder": "Feeders",
+    "section_cabin": "Section cabins",
+    "contact_line": "Contact-line sections",
+    "pair": "Pairs of outages",
+    "variant": "Variants",
+}
+GRIDS = ("normal", "low", "high")
+COMPUTED = ("complete", "flagged")
+LATE_S = 1.0
+"""Trains later than this count as late where the study tells no tolerance [s]."""
+
+FAILURES = {
+    "lowest voltage": ("lowest_voltage_v", 1.0),
+    "highest voltage": ("highest_voltage_v", -1.0),
+    "mean useful voltage of a zone": ("useful_zone_v", 1.0),
+    "mean useful voltage of a train": ("useful_train_v", 1.0),
+    "ratings": ("utilisation_percent", -1.0),
+    "delays": ("worst_late_s", -1.0),
+    "stuck trains": ("stuck_trains", -1.0),
+    "breakers": ("trips", -1.0),
+    "flagged steps": ("flagged_steps", -1.0),
+}
+"""What a case can fail at, in the order of the reports: the figure that tells how badly, and its sign: the lowest is worst."""
+
+_KM = re.compile(r"km (-?[\d.]+)(?:\s*(?:-|–|to)\s*(-?[\d.]+))?")
+_TRACK = re.compile(r"\btrack (\S+)")
+
+
+_UNITS = re.compile(r"(\d+ of \d+)")
+
+
+@dataclass(frozen=True)
+class Failure:
+    """What a case fails at: what is judged, and how it stands in words."""
+
+    what: str
+    words: str
+
+
+class Outages:
+    """The cases of a study of outages.
+
+    Parameters
+    ----------
+    results
+        Tables ``cases``, ``case_*``, ``envelope``, ``device_envelope``; each may be missing.
+    scenario
+        The base, for limits and places.
+    """
+
+    def __init__(self, results: Results, scenario: Scenario) -> None:
+        self.results, self.scenario = results, scenario
+        self._read: dict[str, pd.DataFrame] = {}
+
+    def table(self, name: str) -> pd.DataFrame:
+        """Return a table; an empty one where there is none."""
+        if name not in self._read:
+            self._read[name] = self.results.table(name) if name in self.results.tables else pd.DataFrame()
+        return self._read[name]
+
+    @cached_property
+    def places(self) -> LinePlaces:
+        """What stands along each of the lines."""
+        return LinePlaces(self.scenario)
+
+    @cached_property
+    def cases(self) -> pd.DataFrame:
+        """All cases by kind, along the line, by grid voltage; ``words`` says what is out, ``at_km`` where (NaN: unknown)."""
+        rows = self.table("cases").copy()
+        if rows.empty:
+            return rows
+        for name in ("case", "kind", "subject", "mode", "grid", "status", "reason"):
+            rows[name] = rows[name].astype(str)
+        rows["words"] = [self.words(row) for row in rows[["kind", "subject", "mode", "case"]].itertuples(index=False)]
+        rows["at_km"] = [self.place(subject) for subject in rows["subject"]]
+        kinds = {kind: number for number, kind in enumerate(KIND_WORDS)}
+        grids = {grid: number for number, grid in enumerate(GRIDS)}
+        rows = rows.assign(
+            _kind=[kinds.get(kind, len(kinds)) for kind in rows["kind"]], _grid=[grids.get(grid, 3) for grid in rows["grid"]]
+        )
+        keys = ["_kind", "at_km", "subject", "mode", "_grid"]
+        return rows.sort_values(keys, kind="stable").drop(columns=["_kind", "_grid"]).reset_index(drop=True)
+
+    @staticmethod
+    def words(row: Any) -> str:
+        """Return in words what is out in a case."""
+        if row.kind == "base":
+            return KIND_WORDS["base"]
+        if row.kind == "pair":
+            parts = zip(row.subject.split(" + "), row.mode.split(" + "), strict=False)
+            return " and ".join(_out("", subject, mode) for subject, mode in parts) or row.case
+        return _out(row.kind, row.subject or row.case, row.mode)
+
+    def place(self, subject: str) -> float:
+        """Return the kilometre of what is out, not a number if its name does not tell."""
+        stations = {each.id: each.km for each in (*self.scenario.supply.substations, *self.scenario.supply.section_cabins)}
+        named = [name for name in stations if subject == name or subject.startswith((f"{name} ", f"{name},"))]
+        if named:
+            return float(stations[max(named, key=len)])
+        found = _KM.search(subject)
+        if found is None:
+            return float("nan")
+        ends = [float(text.rstrip(".")) for text in found.groups() if text]
+        return sum(ends) / len(ends)
+
+    def line_of(self, case: Mapping[str, Any]) -> int:
+        """Return the number of the line where the lowest voltage of a case stands, 0 if it is unknown."""
+        track = str(case.get("lowest_voltage_track") or "")
+        return max(0, self.places.number_of(track)) if track else 0
+
+    @cached_property
+    def grids(self) -> list[str]:
+        """The grid voltages that were looked at, normal first."""
+        found = set(self.cases["grid"]) if len(self.cases) else set()
+        return [grid for grid in GRIDS if grid in found] + sorted(found - set(GRIDS))
+
+    @cached_property
+    def by_id(self) -> dict[str, dict[str, Any]]:
+        """The cases by identifier."""
+        return {str(row["case"]): {str(key): value for key, value in row.items()} for row in self.cases.to_dict("records")}
+
+    def told(self, case: str) -> str:
+        """Return a case in words, with its grid voltage where that is not the normal one."""
+        row = self.by_id.get(str(case))
+        if row is None:
+            return str(case)
+        return row["words"] if row["grid"] in ("normal", "") else f"{row['words']}, {row['grid']} grid voltage"
+
+    def groups(self) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Any]]]]:
+        """Yield each outage once, the base first: what is out, and its cases by grid voltage."""
+        for _, rows in self.cases.groupby(["kind", "subject", "mode", "words"], sort=False, dropna=False):
+            own = [{str(key): value for key, value in row.items()} for row in rows.to_dict("records")]
+            yield own[0], {row["grid"]: row for row in own}
+
+    def limit(self, name: str) -> Limit | None:
+        """Return a limit of the study's system."""
+        return find_limit(self.scenario.limits, self.scenario.supply.system, name)
+
+    @cached_property
+    def useful_limit(self) -> Limit | None:
+        """The lowest mean useful voltage of the class of the line."""
+        high_speed = self.scenario.sizing.useful_voltage.line_class == "high_speed"
+        return (self.limit("u_useful_high_speed") if high_speed else None) or self.limit("u_useful")
+
+    @cached_property
+    def added_s(self) -> dict[str, tuple[float, str]]:
+        """Greatest lateness that a case adds to a train against its base [s], and the train."""
+        rows = self.table("case_trains")
+        if rows.empty:
+            return {}
+        known = rows[rows["added_late_s"].notna()]
+        worst = known.loc[known.groupby(known["case"].astype(str))["added_late_s"].idxmax()]
+        return {
+            str(case): (float(seconds), str(train))
+            for case, seconds, train in zip(worst["case"], worst["added_late_s"], worst["train"], strict=True)
+        }
+
+    def failures(self, case: Mapping[str, Any]) -> list[Failure]:
+        """Return what a case fails at; none for one that holds. One that was not computed fails at that."""
+        if case["status"] not in COMPUTED:
+            reason = " ".join(str(case["reason"]).split())
+            return [Failure("not computed", f"{case['status']}: {reason}" if reason else str(case["status"]))]
+        found = list(self._voltages(case))
+        counts = (
+            ("overloaded", "ratings", "device{} beyond the rating"),
+            ("late_trains", "delays", "train{} late"),
+            ("stuck_trains", "stuck trains", "train{} stuck"),
+            ("trips", "breakers", "trip{} of breakers"),
+            ("flagged_steps", "flagged steps", "step{} flagged"),
+        )
+        for name, what, words in counts:
+            many = _number(case, name)
+            if many > 0.0:
+                found.append(Failure(what, f"{many:.0f} {words.format('s' if many > 1 else '')}"))
+        return found
+
+    def failing(self) -> dict[str, list[tuple[str, str]]]:
+        """Return for each thing that outages fail at the cases with it, the worst first, each with how it stands in words."""
+        found: dict[str, list[tuple[str, str]]] = {what: [] for what in FAILURES}
+        for case in self.by_id.values():
+            if case["kind"] != "base" and case["status"] in COMPUTED:
+                for failure in self.failures(case):
+                    found[failure.what].append((case["case"], failure.words))
+        for what, cases in found.items():
+            name, sign = FAILURES[what]
+            severity = {case: sign * _number(self.by_id[case], name) for case, _ in cases}
+            cases.sort(key=lambda each: np.nan_to_num(severity[each[0]], nan=np.inf))  # noqa: B023 - sorted at once
+        return {what: cases for what, cases in found.items() if cases}
+
+    def _voltages(self, case: Mapping[str, Any]) -> Iterator[Failure]:
+        low, high, useful = self.limit("u_min2"), self.limit("u_max2"), self.useful_limit
+        lowest, highest = _number(case, "lowest_voltage_v"), _number(case, "highest_voltage_v")
+        if low is not None and lowest < low.value:
+            yield Failure("lowest voltage", f"{lowest:.0f} V, below U_min2 {low.value:g} V")
+        if high is not None and highest > high.value:
+            yield Failure("highest voltage", f"{highest:.0f} V, above U_max2 {high.value:g} V")
+        for of, name in (("zone", "useful_zone"), ("train", "useful_train")):
+            volts = _number(case, f"{name}_v")
+            if useful is not None and volts < useful.value:
+                words = f"{volts:.0f} V in {of} {case[name]}, below {useful.value:g} V"
+                yield Failure(f"mean useful voltage of a {of}", words)
+
+
+def _out(kind: str, subject: str, mode: str) -> str:
+    """Return in words what is out, by the columns of table ``cases``.
+
+    >>> _out("unit", "Psary unit", "1 of 2"), _out("contact_line", "track 1 km 0-9", "dead")
+    ('Psary, 1 of 2 units', 'contact line track 1 km 0-9')
+    """
+    if subject.endswith(" unit"):
+        left = _UNITS.sub(r"\1 units", mode) if _UNITS.search(mode) else "only unit out"
+        return f"{subject.removesuffix(' unit')}, {left}"
+    words = KIND_WORDS.get(kind, kind) if kind not in ("", "variant") else ""
+    told = not words or subject.casefold().startswith(tuple(words.split()))
+    named = subject if told else f"{words} {subject}"
+    state = mode.replace("_", " ")
+    return f"{named}, {state}" if state and state != "dead" else named
+
+
+def worst(cases: Sequence[Mapping[str, Any]], name: str, *, lowest: bool = False) -> Mapping[str, Any] | None:
+    """Return the case with the highest, or lowest, value of a figure; None if no case has one."""
+    known = [case for case in cases if np.isfinite(_number(case, name))]
+    if not known:
+        return None
+    return min(known, key=lambda case: _number(case, name)) if lowest else max(known, key=lambda case: _number(case, name))
+
+
+def _number(case: Mapping[str, Any], name: str) -> float:
+    value = case.get(name)
+    return float("nan") if value is None or pd.isna(value) else float(value)
