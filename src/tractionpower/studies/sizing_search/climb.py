@@ -77,7 +77,7 @@ class Climb:
     verified: bool = False
     stuck: tuple[Shortfall, ...] = ()
     _deciding: set[str] = field(default_factory=set)
-    _kept: set[str] = field(default_factory=set)  # items that must not be lessened any more
+    _kept: set[str] = field(default_factory=set)  # items of which less has been refused
 
     def run(self) -> None:
         """Search until the design holds and nothing can be saved, or nothing more may be tried."""
@@ -117,7 +117,6 @@ class Climb:
             best = max(self._trials(shortfall), key=lambda trial: trial[0], default=None)
             if best is not None and best[0] > 0.0:
                 self._take(best[1], best[2], shortfall.words)
-                self._kept.add(best[1])
                 return
         self.stuck = self.shortfalls
 
@@ -175,11 +174,9 @@ class Climb:
         return False
 
     def _may_lessen(self, item: Item) -> bool:
-        """Tell whether less of an item has not been refused, and would not overload it by plain division."""
+        """Tell whether less of an item has not been refused; whether it does is not reckoned, since its neighbours help out."""
         now = self.design.get(item.name, item.declared)
-        if now == 0 or item.name in self._kept or item.kind == "contact_line":
-            return False
-        return self._use(item) * item.rungs[now].cost / max(item.rungs[now - 1].cost, BETTER) <= self.allowed_percent
+        return now > 0 and item.name not in self._kept and item.kind != "contact_line"
 
     def _saving(self, item: Item) -> float:
         now = self.design.get(item.name, item.declared)
