@@ -56,7 +56,10 @@ def test_every_key_is_explained(name, model):
 
 def test_comments_come_from_the_declarations():
     text = template_texts()["supply.yaml"]
-    assert "#   internal_resistance_ohm [Ω]: Slope of the external characteristic, (E - U)/I. Required." in text
+    assert "#   no_load_voltage_v [V]: Voltage of the busbar without load. Required." in text
+    told = "Slope of the external characteristic, (E - U)/I, with all units; left out: by unit_resistance_ohm."
+    assert f"#   internal_resistance_ohm [Ω]: {told}\n" in text
+    assert "#   unit: Type of its rectifier units, by the table of rectifier units.\n" in text
     assert "#   feeder_resistance_ohm [Ω]: Resistance of each feeder" in text
     assert "side. Default: 0.0." in text
 

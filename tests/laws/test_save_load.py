@@ -8,8 +8,10 @@ from hypothesis import strategies as st
 
 from tractionpower.io.conductor_files import shipped_conductors
 from tractionpower.io.limits_files import shipped_limits
+from tractionpower.io.rating_files import DUTY_CLASSES, RECTIFIER_UNITS
 from tractionpower.io.scenario_files import load_scenario, save_scenario
 from tractionpower.model.conductors import Conductor, overlay_conductors
+from tractionpower.model.contingency import OUTAGE_KINDS, Contingency
 from tractionpower.model.drive import (
     CurrentPoint,
     EfficiencyPoint,
@@ -25,7 +27,9 @@ from tractionpower.model.drive import (
 )
 from tractionpower.model.limits import Limit, overlay
 from tractionpower.model.line import Connection, Curve, Gradient, Line, SpeedLimit, Station, Track, TrackPoint
+from tractionpower.model.ratings import DutyRow, RectifierUnit, duty_of, overlay_duty, overlay_units
 from tractionpower.model.scenario import Clock, Output, Scenario
+from tractionpower.model.sizing import Sizing, SizingSearch, UsefulVoltageStudy, Window, Zone
 from tractionpower.model.supply import (
     ContactLine,
     Load,
@@ -103,12 +107,27 @@ LINES = st.builds(
     ),
 )
 
+RATED = st.none() | positive(1e4)
+
 SUBSTATIONS = st.builds(
-    Substation,
+    lambda by_unit, ohm, **more: Substation(**{"unit_resistance_ohm" if by_unit else "internal_resistance_ohm": ohm}, **more),
+    st.booleans(),
+    positive(10),
     id=NAMES,
     km=reals(),
     no_load_voltage_v=positive(10_000),
-    internal_resistance_ohm=positive(10),
+    unit=st.sampled_from([None, "PD-17", "ADIF-3000", "own"]),
+    rated_current_a=RATED,
+    duty_class=st.sampled_from([None, "V", "IX", "own"]),
+    units=st.integers(1, 5),
+    units_in_service=st.sampled_from([None, 0, 1]),
+    reserve_units=st.integers(0, 2),
+    reserve_after_s=reals(0, 1e4),
+    reserve_overload_percent=reals(0, 200),
+    supply_point=st.none() | NAMES,
+    contract_power_kw=RATED,
+    feeder_rated_current_a=RATED,
+    return_rated_current_a=RATED,
     conducts=st.sampled_from(["forward", "both"]),
     state=st.sampled_from(["in_service", "rectifiers_out", "bypassed", "open"]),
     feeder_resistance_ohm=reals(0, 10),
@@ -159,11 +178,11 @@ WIRES = st.builds(
     wear_percent=st.none() | reals(0, 60),
 )
 CONTACT_LINES = st.one_of(
-    stretch(ContactLine, resistance_ohm_per_km=positive(10), tracks=TRACKS),
+    stretch(ContactLine, resistance_ohm_per_km=positive(10), rated_current_a=RATED, tracks=TRACKS),
     stretch(ContactLine, type=st.sampled_from(["C120-2C", "CA-220", "own", "unknown"]), wear_percent=st.none() | reals(0, 60)),
     stretch(ContactLine, wires=st.lists(WIRES, min_size=1, max_size=3).map(tuple), temperature_c=st.none() | reals(-50, 200)),
 )
-RETURNS = stretch(ReturnCircuit, resistance_ohm_per_km=reals(0, 10), tracks=TRACKS) | stretch(
+RETURNS = stretch(ReturnCircuit, resistance_ohm_per_km=reals(0, 10), rated_current_a=RATED, tracks=TRACKS) | stretch(
     ReturnCircuit, rail=st.sampled_from(["60E1", "own"]), wear_percent=reals(0, 60)
 )
 
@@ -172,7 +191,14 @@ SUPPLIES = st.builds(
     system=NAMES,
     substations=listed(SUBSTATIONS),
     section_cabins=listed(
-        st.builds(SectionCabin, id=NAMES, km=reals(), state=st.sampled_from(["closed", "bypassed", "open"]), tracks=TRACKS)
+        st.builds(
+            SectionCabin,
+            id=NAMES,
+            km=reals(),
+            state=st.sampled_from(["closed", "bypassed", "open"]),
+            feeder_rated_current_a=RATED,
+            tracks=TRACKS,
+        )
     ),
     section_points=listed(st.builds(SectionPoint, id=NAMES, track=NAMES, km=reals(), state=st.sampled_from(["open", "closed"]))),
     contact_lines=st.lists(CONTACT_LINES, min_size=1, max_size=3).map(tuple),
@@ -186,6 +212,7 @@ SUPPLIES = st.builds(
             cable=st.sampled_from(["YAKY-500", "own"]),
             cables=st.integers(1, 9),
             length_m=positive(1e4),
+            rated_current_a=RATED,
         )
     ),
     loads=listed(loads()),
@@ -212,6 +239,9 @@ CONDUCTORS = listed(
         resistance_ohm_per_km=positive(10),
         area_mm2=st.none() | positive(1e4),
         per_kelvin=reals(0, 0.02),
+        rated_current_a=RATED,
+        diameter_mm=RATED,
+        highest_c=RATED,
         source=CELLS,
         status=st.sampled_from(["verified", "secondary", "recalled", "user"]),
     )
@@ -224,6 +254,61 @@ CONDUCTORS = listed(
         source=CELLS,
     )
 ).map(lambda rows: overlay_conductors(shipped_conductors(), rows))
+
+# A class is replaced as a whole: by some of its own rows, too.
+DUTY = st.one_of(
+    st.sampled_from([(), ("V", 1), ("IX", 2)]).map(
+        lambda pick: duty_of(DUTY_CLASSES.shipped, pick[0])[: pick[1]] if pick else ()
+    ),
+    st.lists(
+        st.builds(
+            DutyRow,
+            duty_class=st.sampled_from(["V", "VI", "own"]),
+            window_s=st.sampled_from([0.0, 60.0, 7200.0, 0.1]),
+            multiple=positive(100),
+            meaning=CELLS,
+            source=CELLS,
+        ),
+        max_size=4,
+        unique_by=lambda row: (row.duty_class, row.window_s),
+    ),
+).map(lambda rows: overlay_duty(DUTY_CLASSES.shipped, rows))
+
+UNITS = listed(
+    st.builds(
+        RectifierUnit,
+        unit=st.sampled_from(["PD-17", "own"]),
+        rated_current_a=positive(1e4),
+        rated_voltage_v=positive(1e4),
+        duty_class=st.sampled_from(["V", "own", "missing"]),
+        pulses=st.integers(2, 24),
+        transformer_mva=RATED,
+        short_circuit_percent=st.none() | positive(100),
+        load_loss_kw=st.none() | reals(0, 100),
+        source=CELLS,
+    )
+).map(lambda rows: overlay_units(RECTIFIER_UNITS.shipped, rows))
+
+ENDS = st.tuples(TIMES, TIMES).filter(lambda pair: abs(pair[0] - pair[1]) > 1e-3).map(sorted)
+SIZINGS = st.builds(
+    Sizing,
+    utilisation_percent=positive(200),
+    useful_voltage=st.builds(
+        UsefulVoltageStudy,
+        zones=listed(stretch(Zone, id=NAMES, tracks=TRACKS)),
+        windows=listed(ENDS.map(lambda pair: Window(from_=pair[0], to=pair[1]))),
+        line_class=st.sampled_from(["conventional", "high_speed"]),
+    ),
+    search=st.builds(SizingSearch, most_units=st.integers(1, 9), contact_lines=listed(NAMES), unit_points=reals(0)),
+)
+CONTINGENCIES = st.builds(
+    Contingency,
+    kinds=st.sampled_from([("unit",), OUTAGE_KINDS[::-1]]),
+    cabin_modes=st.sampled_from([("open",), ("open", "bypassed")]),
+    devices=st.none() | listed(NAMES),
+    low_grid_voltage_pu=st.none() | reals(0.5, 1.0),
+    begins=st.none() | TIMES,
+)
 
 # --- trains: any text may be an identifier, so capitals, slashes, dots and names of devices are drawn often
 
@@ -438,6 +523,10 @@ SCENARIOS = st.builds(
     seed=st.integers(0, 2**40),
     limits=LIMITS,
     conductors=CONDUCTORS,
+    duty_classes=DUTY,
+    rectifier_units=UNITS,
+    sizing=SIZINGS,
+    contingency=CONTINGENCIES,
     coast_without_voltage_s=reals(0, 900),
     output=st.builds(Output, every_s=st.none() | positive(1e3), tables=st.none() | listed(TEXTS)),
 )

@@ -37,6 +37,8 @@ class OverlaidTable(Generic[Row]):
         The fields that tell rows apart.
     overlay
         Lays rows over others and sorts them.
+    whole
+        The fields that tell apart what `overlay` replaces as a whole; left out: single rows.
     """
 
     def __init__(
@@ -46,8 +48,10 @@ class OverlaidTable(Generic[Row]):
         word: str,
         keys: tuple[str, ...],
         overlay: Callable[[Sequence[Row], Sequence[Row]], tuple[Row, ...]],
+        whole: tuple[str, ...] = (),
     ) -> None:
         self.model, self.name, self.word, self.keys, self._overlay = model, name, word, keys, overlay
+        self._whole = whole or keys
 
     @cached_property
     def shipped(self) -> tuple[Row, ...]:
@@ -80,11 +84,17 @@ class OverlaidTable(Generic[Row]):
         return rows, table.mark
 
     def text(self, rows: Sequence[Row]) -> str:
-        """Return as CSV those of `rows` that differ from the shipped ones; empty when none does."""
-        changed = set(rows) - set(self.shipped)
-        columns = list(self.model.model_fields)
-        kept = [[getattr(row, name) for name in columns] for row in rows if row in changed]
+        """Return as CSV those of `rows` that differ from the shipped ones, with all of their whole; empty when none does."""
+        shipped, columns = self._wholes(self.shipped), list(self.model.model_fields)
+        changed = [own for name, own in self._wholes(rows).items() if set(own) != set(shipped.get(name, ()))]
+        kept = [[getattr(row, name) for name in columns] for own in changed for row in own]
         return csv_text(columns, kept) if kept else ""
+
+    def _wholes(self, rows: Sequence[Row]) -> dict[tuple[object, ...], list[Row]]:
+        found: dict[tuple[object, ...], list[Row]] = {}
+        for row in rows:
+            found.setdefault(tuple(getattr(row, name) for name in self._whole), []).append(row)
+        return found
 
     def _problems(self, error: ValidationError, source: Source, rows: list[dict[str, object]], mark: Mark) -> list[Problem]:
         # The table is a list, so it is looked at as the one key of a mapping around it.

@@ -11,6 +11,7 @@ from tractionpower.io.wording import did_you_mean, shown
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
+from tractionpower.model.ratings import DutyRow, RectifierUnit
 from tractionpower.model.scenario import StudyFile
 from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Timetable
@@ -25,6 +26,8 @@ _MODELS: dict[str, type[BaseModel]] = {
     "vehicle": Vehicle,
     "limits": Limit,
     "conductors": Conductor,
+    "duty_classes": DutyRow,
+    "rectifier_units": RectifierUnit,
 }
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -37,7 +40,7 @@ def schema_names() -> tuple[str, ...]:
 
 
 def schema(name: str) -> dict[str, Any]:
-    """Return the JSON schema of a kind of input file; those of ``limits`` and ``conductors`` are one row of the CSV file.
+    """Return the JSON schema of a kind of input file; those of tables such as ``limits`` are one row of the CSV file.
 
     Raises
     ------
