@@ -88,6 +88,7 @@ def test_pieces_do_not_matter_to_the_last_bit(seed, cuts):
     np.testing.assert_array_equal(found.load_duration([0.0, 0.1, 0.5, 1.0]), whole.load_duration([0.0, 0.1, 0.5, 1.0]))
 
 
+@pytest.mark.interpreted
 def test_the_profile_worked_by_hand():
     """300 s at 1000 A, 60 s at 3000 A, 540 s at 500 A."""
     amps = np.repeat([1000.0, -3000.0, 500.0], [300, 60, 540])[:, np.newaxis]
@@ -133,6 +134,7 @@ def test_the_peak_is_reached_for_no_time_and_nothing_for_all():
     np.testing.assert_allclose(found[:, 1], [2000.0, 2000.0, 1000.0, 1000.0, 0.0], atol=2000.0 / (BINS / 2))
 
 
+@pytest.mark.interpreted
 def test_a_peak_alone_can_be_noted():
     found = loads_of(np.arange(3.0), np.array([[1.0], [5.0], [2.0]]), 1.0, (10.0,))
     found.note_peak(0, np.array([7.0, 8.0]), np.array([3.0, -6.0]))

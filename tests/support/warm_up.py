@@ -42,11 +42,16 @@ def _run_trains() -> None:
 
 
 def _run_coupled() -> None:
-    """Compile what trains and network need together, with windows, spells and sums."""
+    """Compile what trains and network need together, with windows, spells and sums, and loads of devices."""
     from coupled import couple, run  # noqa: PLC0415
 
+    from tractionpower.cosimulation.quiet import run_quietly  # noqa: PLC0415
     from tractionpower.cosimulation.simulate import simulate  # noqa: PLC0415
+    from tractionpower.cosimulation.tables import compile_scenario  # noqa: PLC0415
+    from tractionpower.studies.ratings.watch import RatingsWatch  # noqa: PLC0415
 
+    scenario = couple(run("E"), end_s=5.0)
+    run_quietly(scenario, RatingsWatch(scenario, compile_scenario(scenario)).watches)
     simulate(couple(run("E"), run("S", "series_motors"), run("T", "table", "2", 20.0, 0.0, speed_kmh=60.0), end_s=20.0))
 
 

@@ -46,10 +46,10 @@ def longest(beyond):
 
 def test_breakers_against_brute_force(rated):
     stations = [{"id": "A", "km": 0.0, "trip_current_a": 4000.0, **UNITS}, {"id": "B", "km": 20.0, **UNITS}]
-    cabin = {"id": "C", "km": 10.0, "trip_current_a": 700.0, "trip_delay_s": 1e4}
+    cabin = {"id": "C", "km": 10.0, "trip_current_a": 100.0, "trip_delay_s": 1e4}
     found = rated(couple(*RUNS, end_s=200.0, step_s=0.5, substations=stations, section_cabins=[cabin]), {"A 1 high_km": 2})
     rows = {(row["device"], row.get("level_percent")): row for row in found.tables["breakers"]}
-    for name, setting in (("A 1 high_km", 4000.0), ("C 1 low_km", 700.0), ("C 2 high_km", 700.0)):
+    for name, setting in (("A 1 high_km", 4000.0), ("C 1 low_km", 100.0), ("C 2 high_km", 100.0)):
         amps = np.abs(link(found, name))
         for level in LEVELS_PERCENT:
             row, beyond = rows[name, level], amps > setting * level / 100.0
