@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from coupled import couple, run
+from random_coupling import RandomCoupling
 from small_supplies import OWN_RAILS, RAILS, small_line, small_supply
 
 from tractionpower.cosimulation.quiet import QuietRun
@@ -75,7 +76,11 @@ class Taken:
 
     def __call__(self, time_s, rows, supply):
         self.amps.append(self.currents(rows, supply))
-        self.rows.append({name: getattr(rows, name).copy() for name in ("source_a", "link_a", "gauge_a")})
+        ends = np.cumsum(rows.steps["trains"])
+        sums = np.concatenate([[0.0], np.cumsum(rows.trains["current_a"])])
+        trains_a = sums[ends] - sums[ends - rows.steps["trains"]]
+        self.rows.append({"load_a": rows.load_a.copy(), "trains_a": trains_a})
+        self.buffers = type(rows)(*(array.copy() for array in rows))
 
     def of(self, name):
         number = [device.id for device in self.currents.devices].index(name)
@@ -117,6 +122,25 @@ def test_a_common_return_carries_what_the_others_leave():
     np.testing.assert_allclose(own + common, taken.of("A")[:, 0], atol=1e-9)
     np.testing.assert_allclose(common, -taken.of("rails 2 km 0-20")[:, 0], atol=1e-5)
     assert np.abs(own).max() > 100.0
+
+
+@pytest.mark.parametrize("seed", [1, 4, 6, 7, 9])
+def test_what_flows_into_sections_is_what_trains_and_loads_take(seed):
+    """Whatever is switched, cut or dead: of all contact lines together, and in each step."""
+    taken = Taken(RandomCoupling(seed, 80).scenario)
+    into = [k for k, number in enumerate(taken.currents.columns) if taken.currents.devices[number].kind == "contact_line"]
+    trains_a = np.concatenate([rows["trains_a"] for rows in taken.rows])
+    np.testing.assert_allclose(taken.amps[:, into].sum(axis=1), trains_a + taken.row("load_a").sum(axis=1), atol=1e-3)
+    assert np.abs(trains_a).max() > 1.0
+
+
+def test_a_step_without_a_solution_does_not_spoil_the_sums():
+    taken = Taken(couple(run("x"), end_s=5.0))
+    buffers, tables = taken.buffers, taken.tables
+    buffers.link_a[1], buffers.gauge_a[2, 0] = np.nan, np.inf
+    amps = taken.currents(buffers, tables)
+    assert np.isfinite(amps).all()
+    np.testing.assert_array_equal(amps[[0, 3, 4]], taken.amps[[0, 3, 4]])
 
 
 def test_sums_of_columns_do_not_depend_on_how_many_rows_there_are():

@@ -98,7 +98,7 @@ class DeviceCurrents:
         ]
 
     def __call__(self, rows: Buffers, supply: SupplyTables) -> Floats:
-        """Return the currents with their signs [A], shape (steps, columns); of a unit 0 where none is in service.
+        """Return the currents with their signs [A], shape (steps, columns); 0 where there is none, as of a unit that is out.
 
         Parameters
         ----------
@@ -107,10 +107,13 @@ class DeviceCurrents:
         supply
             The supply in its states then.
         """
-        source_a = np.nan_to_num(rows.source_a)
-        parts = [source_a / units_in_service(supply), source_a, rows.link_a]
-        parts.append(source_a[:, self._commons] - sums_of_columns(rows.link_a, self._drains))
-        return np.concatenate([*parts, rows.gauge_a], axis=1)
+        source_a = rows.source_a
+        common_a = source_a[:, self._commons] - sums_of_columns(rows.link_a, self._drains)
+        parts = [source_a / units_in_service(supply), source_a, rows.link_a, common_a]
+        amps = np.concatenate([*parts, rows.gauge_a], axis=1)
+        if not np.isfinite(amps.sum()):  # a step without a solution, which the run flags, must not spoil all sums
+            amps[~np.isfinite(amps)] = 0.0
+        return amps
 
 
 def sums_of_columns(values: Floats, groups: Sequence[Sequence[int]]) -> Floats:

@@ -31,7 +31,7 @@ def check_sums(rows):
         assert total == pytest.approx(own[0]["peak_a"], abs=1e-3 * (1 + len(own)) + 1e-6)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 3, 5, 8])
+@pytest.mark.parametrize("seed", [1, 3, 4, 6, 8])
 def test_parts_add_up(seed, rated):
     """Whatever conducts, regenerates, is off or fed by unequal substations."""
     check_sums(rated(RandomCoupling(seed, 120).scenario).tables["peaks"])

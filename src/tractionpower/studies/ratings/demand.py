@@ -65,7 +65,7 @@ class DemandWatch:
         """Take the rows of some steps."""
         time_s, rows = counted(self._from_s, time_s, rows)
         heat_ohm = np.array([dissipative_resistance(station) or 0.0 for station in supply.substations])
-        own = np.nan_to_num(rows.source_v) * rows.source_a + heat_ohm * rows.source_a**2
+        own = np.nan_to_num(rows.source_v * rows.source_a + heat_ohm * rows.source_a**2)  # none without a busbar
         watts = sums_of_columns(own, self._stations)
         at = np.floor(time_s / PERIOD_S + _NEAR * self._step_s / PERIOD_S).astype(np.int64)
         here_s = np.minimum((at + 1) * PERIOD_S - time_s, self._step_s)  # of a step over a boundary the part before it
