@@ -48,6 +48,13 @@ def test_the_warm_up_does_not_count():
     np.testing.assert_array_equal(recorder.loads.peak_a, np.abs(amps[40:]).max(axis=0))
 
 
+@pytest.mark.parametrize(("end_s", "full"), [(9.0, []), (15.0, [10.0, 15.0]), (60.0, [10.0, 15.0, 60.0])])
+def test_windows_longer_than_the_run_take_no_memory(end_s, full):
+    recorder, _ = watched(couple(run("x"), end_s=end_s))
+    assert list(recorder.loads.windows_s) == full
+    assert np.isfinite(recorder.loads.best_rms).all()
+
+
 def test_of_a_section_the_greater_end_counts():
     recorder, amps = watched(couple(run("x"), end_s=120.0))
     number = [device.id for device in recorder.devices].index("track 1 km 0-10")

@@ -88,7 +88,7 @@ class DeviceRecorder:
     ratings
         What they can bear, in the same order.
     loads
-        Loads of all columns, over the windows of all reports and those of the ratings.
+        Loads of all columns, over the windows of all reports and those of the ratings that are not longer than the run.
     from_s
         From when on the run counts [s].
     """
@@ -99,9 +99,11 @@ class DeviceRecorder:
         self.columns = self._currents.columns
         clock = scenario.clock
         self.ratings: tuple[Rating, ...] = ratings_of(scenario, self.devices)
-        windows_s = (*WINDOWS_S, *(window for rating in self.ratings for window, _ in rating.windows))
-        self.loads = DeviceLoads(len(self.columns), clock.step_s, windows_s)
         self.from_s = clock.start + (clock.warm_up or 0.0)
+        windows_s = {*WINDOWS_S, *(window for rating in self.ratings for window, _ in rating.windows)}
+        longest_s = clock.end - self.from_s + 0.5 * clock.step_s  # others are never full, and their rows take memory
+        full_s = [window for window in windows_s if window <= longest_s]
+        self.loads = DeviceLoads(len(self.columns), clock.step_s, full_s)
         number = {device.station: k for k, device in enumerate(self.devices) if device.kind == "unit"}
         self._waits = [(number[wait.station], wait) for wait in find_waits(scenario)]
 

@@ -73,7 +73,7 @@ def uses(
     devices, ratings
         Devices and their ratings, in the same order.
     loads
-        Their loads, with the columns of `supply.devices.columns_of` and all windows of the ratings.
+        Their loads, with the columns of `supply.devices.columns_of` and all windows of the ratings that the run fills.
     from_s
         Start of what is counted of the run [s].
     allowed_percent
