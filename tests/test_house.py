@@ -20,6 +20,7 @@ COMMANDS = [
     ["journey"],
     ["curves"],
     ["feasibility"],
+    ["contingency"],
     ["report"],
     ["export"],
     ["import"],

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tractionpower.io.scenario_files import save_scenario as save
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.results import Results
+    from tractionpower.studies.contingency.study import contingency
     from tractionpower.studies.feasibility.study import feasibility
     from tractionpower.studies.journeys import journeys
 
@@ -30,6 +31,7 @@ _HOMES = {
     "UsageError": ("errors", "UsageError"),
     "change": ("io.library", "change"),
     "check": ("cosimulation.check", "check_scenario"),
+    "contingency": ("studies.contingency.study", "contingency"),
     "feasibility": ("studies.feasibility.study", "feasibility"),
     "journeys": ("studies.journeys", "journeys"),
     "load": ("io.scenario_files", "load"),
@@ -47,6 +49,7 @@ __all__ = [
     "UsageError",
     "change",
     "check",
+    "contingency",
     "feasibility",
     "journeys",
     "load",

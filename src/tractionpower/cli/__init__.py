@@ -13,7 +13,20 @@ from typing import Annotated
 
 import typer
 
-from tractionpower.cli import check, curves, export, feasibility, import_, journey, new, report, run, schema, validate
+from tractionpower.cli import (
+    check,
+    contingency,
+    curves,
+    export,
+    feasibility,
+    import_,
+    journey,
+    new,
+    report,
+    run,
+    schema,
+    validate,
+)
 from tractionpower.cli.messages import DONE, exit_code_of
 
 app = typer.Typer(
@@ -29,6 +42,7 @@ app.command("check")(check.check)
 app.command("journey")(journey.journey)
 app.command("curves")(curves.curves)
 app.command("feasibility")(feasibility.feasibility)
+app.command("contingency")(contingency.contingency)
 app.command("report")(report.report)
 app.command("export")(export.export)
 app.command("import")(import_.import_)
