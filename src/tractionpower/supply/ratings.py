@@ -67,13 +67,6 @@ def ratings_of(scenario: Scenario, devices: Iterable[Device]) -> tuple[Rating, .
     return tuple(raters.rate(device) for device in devices)
 
 
-def rating_windows(scenario: Scenario) -> tuple[float, ...]:
-    """Return the windows over which currents are held against ratings [s], those of duty classes and conductors, rising."""
-    own = {row.window_s for row in scenario.duty_classes} | {window_s for window_s, _ in NO_OVERLOAD}
-    own |= {limit.value for limit in common_limits(scenario.limits, scenario.supply.system, "window_").values()}
-    return tuple(sorted(own - {0.0}))
-
-
 def no_rating(device_id: str, why: str = "no rating given") -> Rating:
     """Return the rating of a device that has none."""
     return Rating(device_id, math.nan, "", (), math.nan, "", why)
