@@ -1,5 +1,5 @@
 """Write the reference pages: docs/inputs.md from the declarations, docs/results.md also from a run of the template study,
-and the table of conductors that ship in docs/conductors.md.
+and the tables of equipment that ships in docs/conductors.md and docs/ratings.md.
 
 What a run writes and this page does not describe, or the other way round, is an error.
 """
@@ -23,12 +23,14 @@ import tractionpower as tp
 from tractionpower.cosimulation import events
 from tractionpower.io.conductor_files import shipped_conductors
 from tractionpower.io.limits_files import shipped_limits
+from tractionpower.io.rating_files import DUTY_CLASSES, RECTIFIER_UNITS
 from tractionpower.io.templates import write_template
 from tractionpower.kernels.train_tables import LIMITED_BY, PHASES
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import Limit, common_limits
 from tractionpower.model.line import Line
 from tractionpower.model.quantity import unit_of
+from tractionpower.model.ratings import DutyRow, RectifierUnit
 from tractionpower.model.scenario import StudyFile
 from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Timetable
@@ -48,6 +50,8 @@ FILES = {
     "rollingstock/vehicles/ID.yaml": Vehicle,
     "limits (CSV)": Limit,
     "conductors (CSV)": Conductor,
+    "duty_classes (CSV)": DutyRow,
+    "rectifier_units (CSV)": RectifierUnit,
 }
 INPUTS = """Units stand in the names. A list may be the name of a CSV file instead, relative to the file that names it; its
 header row names the keys, those of a nested mapping with dots (`start.time`). A column that is a list of rows itself, such as
@@ -58,6 +62,7 @@ what ships. A character of an id that a file name cannot hold is written as `%` 
 a/b).
 """
 CONDUCTORS = ("<!-- conductors that ship: made by `make docs`; do not edit -->\n", "<!-- end of the conductors that ship -->\n")
+RATINGS = ("<!-- ratings that ship: made by `make docs`; do not edit -->\n", "<!-- end of the ratings that ship -->\n")
 KINDS = {"contact_line": "Contact lines", "wire": "Wires", "cable": "Cables", "rail": "Rails (both rails of one track)"}
 NOTE = "<!-- made by `make docs` from the declarations; do not edit -->\n"
 SIGNS = """Parquet files in the folder of the run. Currents and powers are positive when taken from the line, and when a
@@ -231,26 +236,77 @@ def results_page() -> str:
 
 def conductors_page() -> str:
     """Return the page of conductors with the table of those that ship."""
-    begin, end = CONDUCTORS
-    before, _, rest = (HERE / "conductors.md").read_text(encoding="utf-8").partition(begin)
-    return before + begin + "\n" + "\n".join(_shipped_conductors()) + "\n" + end + rest.partition(end)[2]
+    return _with_shipped("conductors.md", CONDUCTORS, _shipped_conductors())
+
+
+def ratings_page() -> str:
+    """Return the page of ratings with the duty classes, rectifier units and limits that ship."""
+    return _with_shipped("ratings.md", RATINGS, _shipped_ratings())
+
+
+def _with_shipped(name: str, marks: tuple[str, str], lines: Iterable[str]) -> str:
+    """Return a page with the lines between its two marks replaced."""
+    begin, end = marks
+    before, _, rest = (HERE / name).read_text(encoding="utf-8").partition(begin)
+    return before + begin + "\n" + "\n".join(lines) + "\n" + end + rest.partition(end)[2]
 
 
 def _shipped_conductors() -> Iterator[str]:
     """Yield a table for each kind of conductor, then their sources, which rows name by number."""
     rows = shipped_conductors()
     sources = {source: number for number, source in enumerate(dict.fromkeys(row.source for row in rows), 1)}
+    more = {
+        "contact_line": {"wires": "wires"},
+        "wire": {"area_mm2": "area [mm²]", "per_kelvin": "coefficient [1/K]", "diameter_mm": "diameter [mm]",
+                 "highest_c": "highest permanent temperature [°C]"},
+        "cable": {"area_mm2": "area [mm²]", "per_kelvin": "coefficient [1/K]", "rated_current_a": "continuous current [A]"},
+        "rail": {"area_mm2": "area [mm²]", "per_kelvin": "coefficient [1/K]", "rated_current_a": "continuous current [A]"},
+    }  # fmt: skip
     for kind, title in KINDS.items():
-        last = "wires" if kind == "contact_line" else "area [mm²] | coefficient [1/K]"
-        yield f"### {title}\n\n| name | resistance at 20 °C [Ω/km] | {last} | status | source |"
-        yield "|---" * (last.count("|") + 5) + "|"
+        headings = " | ".join(more[kind].values())
+        yield f"### {title}\n\n| name | resistance at 20 °C [Ω/km] | {headings} | status | source |"
+        yield "|---" * (len(more[kind]) + 4) + "|"
         for row in rows:
             if row.kind == kind:
-                ohm = "by its wires" if row.resistance_ohm_per_km is None else f"{row.resistance_ohm_per_km:g}"
-                area = "" if row.area_mm2 is None else f"{row.area_mm2:g}"
-                more = row.wires if kind == "contact_line" else f"{area} | {row.per_kelvin:g}"
-                yield f"| `{row.name}` | {ohm} | {more} | {row.status} | {sources[row.source]} |"
+                ohm = "by its wires" if row.resistance_ohm_per_km is None else _short(row.resistance_ohm_per_km)
+                cells = " | ".join(_short(getattr(row, name)) for name in more[kind])
+                yield f"| `{row.name}` | {ohm} | {cells} | {row.status} | {sources[row.source]} |"
         yield ""
+    yield from _numbered(sources)
+
+
+def _shipped_ratings() -> Iterator[str]:
+    """Yield the tables of duty classes, of rectifier units and of the limits that ratings use, then their sources."""
+    duty, units = DUTY_CLASSES.shipped, RECTIFIER_UNITS.shipped
+    limits = [limit for limit in shipped_limits() if limit.name.startswith(("window_", "wire_", "grid_"))]
+    every = [row.source for rows in (duty, units, limits) for row in rows]
+    sources = {source: number for number, source in enumerate(dict.fromkeys(every), 1)}
+    yield "### Duty classes\n"
+    yield "| class | window [s] | permitted, in rated currents | meaning | status | source |\n|---|---|---|---|---|---|"
+    for row in duty:
+        window = _short(row.window_s) if row.window_s else "whole run"
+        yield f"| {row.duty_class} | {window} | {row.multiple:g} | {row.meaning} | {row.status} | {sources[row.source]} |"
+    yield "\n### Rectifier units\n"
+    columns = {"rated_current_a": "rated current [A]", "rated_voltage_v": "rated voltage [V]", "duty_class": "class",
+               "pulses": "pulses", "transformer_mva": "transformer [MVA]", "short_circuit_percent": "u_k [%]",
+               "load_loss_kw": "load losses [kW]"}  # fmt: skip
+    yield f"| unit | {' | '.join(columns.values())} | status | source |\n" + "|---" * (len(columns) + 3) + "|"
+    for unit in units:
+        cells = " | ".join(_short(getattr(unit, name)) for name in columns)
+        yield f"| `{unit.unit}` | {cells} | {unit.status} | {sources[unit.source]} |"
+    yield "\n### Limits that ratings and outages use\n"
+    yield "| name | value | unit | meaning | status | source |\n|---|---|---|---|---|---|"
+    for limit in limits:
+        yield f"| `{limit.name}` | {limit.value:g} | {limit.unit} | {limit.meaning} | {limit.status} | {sources[limit.source]} |"
+    yield ""
+    yield from _numbered(sources)
+
+
+def _short(value: Any) -> str:
+    return "" if value is None else value if isinstance(value, str) else f"{value:g}"
+
+
+def _numbered(sources: dict[str, int]) -> Iterator[str]:
     yield "### Sources\n"
     yield from (f"{number}. {source}" for source, number in sources.items())
     yield ""
@@ -402,6 +458,7 @@ def main() -> None:
     (HERE / "inputs.md").write_text(inputs_page(), encoding="utf-8")
     (HERE / "results.md").write_text(results_page(), encoding="utf-8")
     (HERE / "conductors.md").write_text(conductors_page(), encoding="utf-8")
+    (HERE / "ratings.md").write_text(ratings_page(), encoding="utf-8")
 
 
 if __name__ == "__main__":

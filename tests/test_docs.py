@@ -5,15 +5,18 @@ import re
 from pathlib import Path
 
 import pytest
-from small_studies import run_in_memory
+from small_studies import make_scenario, run_in_memory
 
 import tractionpower
 from tractionpower.io.conductor_files import CONDUCTORS
 from tractionpower.io.documents import read_document
+from tractionpower.io.rating_files import DUTY_CLASSES, RECTIFIER_UNITS
 from tractionpower.io.text_files import Source
+from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import Load, Supply
 from tractionpower.model.timetable import Timetable
 from tractionpower.supply.conductor_checks import check_conductors
+from tractionpower.supply.rating_checks import check_ratings
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *ROOT.glob("*/README.md"), *ROOT.glob("lines/*/README.md")])
@@ -27,7 +30,7 @@ def reference():
     return module
 
 
-@pytest.mark.parametrize("page", ["inputs", "results", "conductors"])
+@pytest.mark.parametrize("page", ["inputs", "results", "conductors", "ratings"])
 def test_the_reference_pages_are_up_to_date(page, reference):
     made = getattr(reference, f"{page}_page")()
     assert (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8") == made, "run `make docs`"
@@ -54,6 +57,18 @@ def test_the_examples_of_the_page_of_conductors_are_sound(tmp_path):
     supply = read_document(tmp_path / "supply.yaml", Supply)
     assert len(supply.contact_lines) == 4
     assert check_conductors(supply, CONDUCTORS.over_shipped(rows)) == []
+
+
+def test_the_examples_of_the_page_of_ratings_are_sound(tmp_path):
+    page = (ROOT / "docs" / "ratings.md").read_text(encoding="utf-8")
+    blocks = dict(re.findall(r"```(yaml|csv)\n(.*?)```", page, re.DOTALL))
+    (tmp_path / "own.csv").write_text(blocks["csv"], encoding="utf-8")
+    rows, _ = DUTY_CLASSES.read(Source(tmp_path / "own.csv", "own.csv", "duty_classes"))
+    (tmp_path / "supply.yaml").write_text(f"format: 1\n{blocks['yaml']}", encoding="utf-8")
+    supply = read_document(tmp_path / "supply.yaml", Supply)
+    parts = {"duty_classes": DUTY_CLASSES.over_shipped(rows), "rectifier_units": RECTIFIER_UNITS.shipped}
+    scenario = make_scenario(**supply.model_dump(by_alias=True, exclude_unset=True, exclude={"format"}))
+    assert check_ratings(Scenario(**{name: getattr(scenario, name) for name in Scenario.model_fields} | parts)) == []
 
 
 def test_the_example_of_the_page_of_driving_is_sound(tmp_path):

@@ -56,7 +56,8 @@ def test_data_travel_in_the_wheel(wheel):
         assert {f"tractionpower/_data/{kind}/{folder}/{file}" for folder in folders} <= set(names)
     for path in (ROOT / "rollingstock").glob("*/*.yaml"):
         assert f"tractionpower/_data/rollingstock/{path.parent.name}/{path.name}" in names
-    assert {"tractionpower/data/limits.csv", "tractionpower/data/conductors.csv"} <= set(names)
+    tables = ("limits", "conductors", "duty_classes", "rectifier_units")
+    assert {f"tractionpower/data/{table}.csv" for table in tables} <= set(names)
     assert any(name.endswith("licenses/LICENSE") for name in names)
 
 
