@@ -24,7 +24,7 @@ WAIT_S = 1.0
 DEATHS = 2
 """Deaths of workers during the same case after which it is not tried again."""
 
-START_FAILURES = 3
+START_FAILURES = 2
 """Workers that end before they are ready, one after the other, after which no more are started."""
 
 DIED = "the worker process died twice; it may have run out of memory"

@@ -120,7 +120,8 @@ class _Runner:
                 self._crew.close(is_stopped=is_stopped)
         rows = tuple(self._ended[number] for number in sorted(self._ended))
         seconds, used = time.perf_counter() - started, 1 if self._crew is None else self._crew.workers
-        return CasesRun(self._cases, rows, self._keys, self._store, self._reused, self._run, is_interrupted, seconds, used)
+        keys = {case.id: self._keys[case.id] for case in self._cases if case.id in self._keys}
+        return CasesRun(self._cases, rows, keys, self._store, self._reused, self._run, is_interrupted, seconds, used)
 
     def _hand_out(self, left: Any, workers: int, scheduler: str | None) -> bool:
         """Hand out cases while there is room for them; return whether some are under way."""
@@ -230,8 +231,11 @@ def new_crew(bench: Bench, workers: int, scheduler: str | None) -> Crew:
         If a cluster does not answer, or is not of the same versions.
     """
     if scheduler is not None:
-        from tractionpower.studies.runner.cluster import ClusterCrew  # noqa: PLC0415 - Dask is optional
-
+        try:
+            from tractionpower.studies.runner.cluster import ClusterCrew  # noqa: PLC0415 - Dask is optional
+        except ImportError as error:
+            told = 'a scheduler needs Dask, which is not installed: pip install "tractionpower[cluster]"'
+            raise UsageError(f"{told} ({error})") from error
         return ClusterCrew(bench, scheduler)
     if workers > 1:
         from tractionpower.studies.runner.processes import ProcessCrew  # noqa: PLC0415 - not needed by one worker
