@@ -21,6 +21,7 @@ COMMANDS = [
     ["curves"],
     ["feasibility"],
     ["contingency"],
+    ["size"],
     ["report"],
     ["export"],
     ["import"],

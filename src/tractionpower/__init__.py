@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tractionpower.studies.contingency.study import contingency
     from tractionpower.studies.feasibility.study import feasibility
     from tractionpower.studies.journeys import journeys
+    from tractionpower.studies.ratings.study import size
 
 _HOMES = {
     "InputError": ("errors", "InputError"),
@@ -37,6 +38,7 @@ _HOMES = {
     "load": ("io.scenario_files", "load"),
     "save": ("io.scenario_files", "save_scenario"),
     "simulate": ("cosimulation.simulate", "simulate"),
+    "size": ("studies.ratings.study", "size"),
 }
 
 __all__ = [
@@ -55,6 +57,7 @@ __all__ = [
     "load",
     "save",
     "simulate",
+    "size",
 ]
 
 

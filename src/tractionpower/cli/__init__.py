@@ -25,6 +25,7 @@ from tractionpower.cli import (
     report,
     run,
     schema,
+    size,
     validate,
 )
 from tractionpower.cli.messages import DONE, exit_code_of
@@ -43,6 +44,7 @@ app.command("journey")(journey.journey)
 app.command("curves")(curves.curves)
 app.command("feasibility")(feasibility.feasibility)
 app.command("contingency")(contingency.contingency)
+app.command("size")(size.size)
 app.command("report")(report.report)
 app.command("export")(export.export)
 app.command("import")(import_.import_)

@@ -6,13 +6,16 @@ from __future__ import annotations
 
 import io
 import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rich.console import Console
     from rich.table import Table
+
+Bar = Callable[[int, int], None]
+"""Called with the steps done and the steps in all."""
 
 WIDTH = 110
 """Columns of a table at least; narrower terminals wrap [characters]."""
@@ -43,6 +46,22 @@ def new_table(texts: Sequence[str], numbers: Sequence[str]) -> Table:
     for heading in numbers:
         table.add_column(heading, justify="right", no_wrap=True, vertical="bottom")
     return table
+
+
+@contextmanager
+def progress_bar(words: str) -> Iterator[Bar]:
+    """Show a bar while something lasts; it is moved by steps done and steps in all."""
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from tractionpower.cli.closed_pipes import PatientConsole
+
+    bar = Progress(
+        TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"), TimeElapsedColumn(),
+        console=PatientConsole(stderr=True), transient=True,
+    )  # fmt: skip
+    with bar:
+        task = bar.add_task(words, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 def warn_of_compilation(kernel: str) -> None:

@@ -5,8 +5,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,8 +15,6 @@ if TYPE_CHECKING:
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.store import RunWriter
     from tractionpower.studies.feasibility import Judgement
-
-Bar = Callable[[int, int], None]
 
 
 def feasibility(
@@ -92,6 +88,7 @@ def _judge(
     loaded: LoadedScenario, scenario: Scenario, place: tuple[str, Path], tolerance: float | None, *, force: bool
 ) -> tuple[Judgement, RunWriter]:
     """Judge a scenario; `place` is the name of the study and the folder of the results."""
+    from tractionpower.cli.console import progress_bar
     from tractionpower.cli.messages import tell
     from tractionpower.errors import InputError
     from tractionpower.results.store import RunWriter
@@ -107,7 +104,7 @@ def _judge(
             raise InputError(loaded.provenance.place(error.problems)) from None
         raise
     try:
-        with _bar("running the timetable") as update:
+        with progress_bar("running the timetable") as update:
             judgement = judging.execute(update)
         outcome, is_late = judgement.outcome, judgement.verdict == "infeasible"
         writer.finish(outcome.run, outcome.key_figures, is_continued=is_late)  # whatever becomes of a search
@@ -124,6 +121,7 @@ def _searched(scenario: Scenario, judgement: Judgement, writer: RunWriter, wante
 
     Trial runs are kept beside the results until a search comes to its end.
     """
+    from tractionpower.cli.console import progress_bar
     from tractionpower.cli.messages import tell
     from tractionpower.studies.remedies.remedy import as_notes
     from tractionpower.studies.remedies.search import search
@@ -132,7 +130,7 @@ def _searched(scenario: Scenario, judgement: Judgement, writer: RunWriter, wante
     if not (wanted or (wanted is None and judgement.verdict == "infeasible")):
         return run, False
     tell("the verdict is written; Ctrl-C ends the search, and what it has found is kept")
-    with _bar("searching what would save it") as update:
+    with progress_bar("searching what would save it") as update:
         remedies = search(scenario, judgement, update, folder=writer.beside_parts)
     if remedies.reused:
         tell(f"{remedies.reused} trial runs of before are reused")
@@ -146,22 +144,6 @@ def _searched(scenario: Scenario, judgement: Judgement, writer: RunWriter, wante
     if remedies.interrupted:
         tell("the search was broken off: the same command goes on from its trial runs")
     return run, remedies.stopped
-
-
-@contextmanager
-def _bar(words: str) -> Iterator[Bar]:
-    """Show a bar while something lasts; it is moved by steps done and steps in all."""
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    from tractionpower.cli.closed_pipes import PatientConsole
-
-    bar = Progress(
-        TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"), TimeElapsedColumn(),
-        console=PatientConsole(stderr=True), transient=True,
-    )  # fmt: skip
-    with bar:
-        task = bar.add_task(words, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 def _exit_code(judgement: Judgement, strict: bool) -> int:
