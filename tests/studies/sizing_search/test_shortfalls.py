@@ -9,8 +9,9 @@ from tractionpower.studies.sizing_search.shortfalls import NOT_RUN, Asked
 
 ROW = {
     "case": "base", "kind": "base", "grid": "normal", "status": "complete", "reason": "", "lowest_voltage_v": 2800.0,
-    "lowest_voltage_track": "1", "lowest_voltage_km": 7.5, "useful_zone_v": 2900.0, "useful_zone": "A–B",
-    "useful_train_v": 2850.0, "useful_train": "x",
+    "lowest_voltage_track": "1", "lowest_voltage_km": 7.5, "lowest_voltage_s": 60.0,
+    "useful_zone_v": 2900.0, "useful_zone": "A–B",
+    "useful_train_v": 2850.0, "useful_train": "x", "worst_late_s": 0.0, "worst_late_train": "",
 }  # fmt: skip
 
 
@@ -38,14 +39,21 @@ def test_the_lowest_voltage_is_held_against_u_min2_within_a_tenth_of_a_volt(volt
     found = facts(lowest_voltage_v=volts, kind="substation").shortfalls
     assert len(found) == missed
     for item in found:
-        assert (item.what, item.track, item.km) == ("voltage", "1", 7.5)
+        assert (item.what, item.track, item.km) == ("low voltage", "1", 7.5)
 
 
 def test_the_mean_useful_voltage_is_asked_of_normal_operation():
     low = {"useful_zone_v": 2600.0, "useful_train_v": 2500.0}
-    assert [item.what for item in facts(**low).shortfalls] == ["useful_voltage"] * 2
+    assert [item.what for item in facts(**low).shortfalls] == ["useful voltage"] * 2
     assert facts(**low, kind="unit").shortfalls == ()
     assert facts(**low, grid="low").shortfalls == ()
+
+
+def test_the_timetable_is_asked_of_normal_operation():
+    late = {"worst_late_s": 90.0, "worst_late_train": "x"}
+    (found,) = facts(**late).shortfalls
+    assert (found.what, found.km) == ("late trains", 7.5)
+    assert facts(**late, kind="substation").shortfalls == ()
 
 
 def test_a_run_that_did_not_complete_is_worse_than_any_other_miss():

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from tractionpower.model.limits import find_limit
 from tractionpower.model.scenario import Scenario
-from tractionpower.results.spells import TOLERANCE_V
+from tractionpower.studies.cases.judgement import Check, checks_of
+from tractionpower.studies.runner.case import COMPLETE
 
-USEFUL = {"conventional": "u_useful", "high_speed": "u_useful_high_speed"}
-"""Limit of the mean useful voltage for each class of line."""
+NORMALLY = ("useful_zone_v", "useful_train_v", "worst_late_s")
+"""Figures whose limits are asked of normal operation."""
 
 NOT_RUN = 10.0
 """What a case that does not complete misses: more than any other."""
@@ -28,9 +28,9 @@ class Shortfall:
     case
         The case.
     what
-        device, voltage, useful_voltage or run.
+        device, run, or the word of the limit: low voltage, useful voltage, late trains.
     subject
-        The device, zone or train; empty for the lowest voltage.
+        The device; empty for the others.
     track, km
         Where the voltage of the case is lowest; empty and NaN for a device.
     excess
@@ -62,52 +62,45 @@ class CaseFacts:
 
 
 class Asked:
-    """What a scenario asks of every case.
+    """What a scenario asks of every case, of what more equipment can mend.
 
-    Ratings and the lowest voltage of the system hold in every case, the mean useful voltage in the base case at the normal
-    grid voltage: the standards ask it of normal operation.
+    Ratings and the lowest voltage hold in every case; the mean useful voltage and the timetable in the base case at the normal
+    grid voltage, since standards and timetables ask them of normal operation.
     """
 
     def __init__(self, scenario: Scenario) -> None:
         self.allowed_percent = scenario.sizing.utilisation_percent
-        system, limits = scenario.supply.system, scenario.limits
-        lowest = find_limit(limits, system, "u_min2")
-        useful = find_limit(limits, system, USEFUL[scenario.sizing.useful_voltage.line_class])
-        self.lowest_v = None if lowest is None else lowest.value
-        self.useful_v = None if useful is None else useful.value
+        checks = checks_of(scenario)
+        self._always = [check for check in checks if check.figure == "lowest_voltage_v"]
+        self._normally = [check for check in checks if check.figure in NORMALLY]
 
     def facts(self, row: Mapping[str, Any], devices: Iterable[Mapping[str, Any]]) -> CaseFacts:
         """Return what counts of a case: its row of table ``cases``, and its rows of ``case_devices``."""
-        used = {
-            str(item["device"]): float(item["utilisation_percent"]) for item in devices if _known(item["utilisation_percent"])
-        }
+        percents = {str(item["device"]): item["utilisation_percent"] for item in devices}
+        used = {device: float(percent) for device, percent in percents.items() if _known(percent)}
         return CaseFacts(tuple(self._shortfalls(row, used)), used)
 
     def _shortfalls(self, row: Mapping[str, Any], used: Mapping[str, float]) -> Iterator[Shortfall]:
         case = str(row["case"])
-        if row["status"] != "complete":
+        if row["status"] != COMPLETE:
             yield Shortfall(case, "run", "", "", np.nan, NOT_RUN, f"the run is {row['status']}: {row['reason']}")
         for device, percent in sorted(used.items()):
             if percent > self.allowed_percent * (1.0 + 1e-9):
                 words = f"{device} at {percent:.0f} % of its rating, {self.allowed_percent:g} % are allowed"
                 yield Shortfall(case, "device", device, "", np.nan, percent / self.allowed_percent - 1.0, words)
-        yield from self._voltages(case, row)
+        is_normal = row.get("kind") == "base" and row.get("grid") == "normal"
+        for check in [*self._always, *(self._normally if is_normal else ())]:
+            if _known(row.get(check.figure)) and not check.is_met(row):
+                yield _miss(check, row)
 
-    def _voltages(self, case: str, row: Mapping[str, Any]) -> Iterator[Shortfall]:
-        lowest = row.get("lowest_voltage_v")
-        if not _known(lowest):
-            return
-        track, km = str(row["lowest_voltage_track"]), float(row["lowest_voltage_km"])
-        if self.lowest_v is not None and float(lowest or 0.0) < self.lowest_v - TOLERANCE_V:
-            words = f"{lowest:.0f} V on track {track} at km {km:.1f}, below {self.lowest_v:g} V"
-            yield Shortfall(case, "voltage", "", track, km, 1.0 - float(lowest or 0.0) / self.lowest_v, words)
-        if self.useful_v is None or row.get("kind") != "base" or row.get("grid") != "normal":
-            return
-        for name in ("zone", "train"):
-            volts, subject = row.get(f"useful_{name}_v"), f"{name} {row.get(f'useful_{name}')}"
-            if _known(volts) and float(volts or 0.0) < self.useful_v - TOLERANCE_V:
-                words = f"mean useful voltage {volts:.0f} V of {subject}, below {self.useful_v:g} V"
-                yield Shortfall(case, "useful_voltage", subject, track, km, 1.0 - float(volts or 0.0) / self.useful_v, words)
+
+def _miss(check: Check, row: Mapping[str, Any]) -> Shortfall:
+    """Return by how much a case misses the limit of a figure; what it needs is more voltage where that is lowest."""
+    verdict = check.verdict(row)
+    excess = abs(verdict["value"] - check.value) / (check.value or 1.0)
+    words = f"{check.name} {verdict['value']:.0f} {check.unit} ({verdict['place']}) against {check.value:g} {check.unit}"
+    track, km = str(row["lowest_voltage_track"]), row["lowest_voltage_km"]
+    return Shortfall(str(row["case"]), check.word, "", track, float(km) if _known(km) else np.nan, excess, words)
 
 
 def _known(value: Any) -> bool:
