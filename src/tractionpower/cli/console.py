@@ -6,22 +6,26 @@ from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
-
-Bar = Callable[[int, int], None]
-"""Called with the steps done and the steps in all."""
 
 WIDTH = 110
 """Columns of a table at least; narrower terminals wrap [characters]."""
 
 PIPE_WIDTH = 250
 """Columns of a table at most where no window limits it [characters]."""
+
+
+class Bar(Protocol):
+    """Moves a bar."""
+
+    def __call__(self, done: int, total: int, words: str | None = None, /) -> None:
+        """Take the steps done, the steps in all, and what is being done where that changes."""
 
 
 def new_console() -> Console:
@@ -61,7 +65,11 @@ def progress_bar(words: str) -> Iterator[Bar]:
     )  # fmt: skip
     with bar:
         task = bar.add_task(words, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+        def update(done: int, total: int, now: str | None = None, /) -> None:
+            bar.update(task, completed=done, total=total, description=words if now is None else now)
+
+        yield update
 
 
 def warn_of_compilation(kernel: str) -> None:

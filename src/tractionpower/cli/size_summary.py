@@ -5,7 +5,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 COLOURS = {"pass": "bold green", "fail": "bold red", "not rated": "bold yellow"}
 """Styles of verdicts."""
@@ -43,8 +46,43 @@ def show(run: Mapping[str, Any]) -> None:
             console.print(sentence(verdict))
     for note in (*told["notes"], *run["notes"]):
         console.print(note)
+    if "search" in told:
+        _search(console, told["search"])
     if run["flagged_steps"]:
         console.print(f"{run['flagged_steps']} steps are flagged, see table events: the verdict is of what was computed")
+
+
+def _search(console: Console, found: Mapping[str, Any]) -> None:
+    """Print the equipment that a search has found."""
+    from tractionpower.cli.console import new_table
+
+    console.print()
+    console.print(search_headline(found), style=COLOURS["pass" if found["holds"] else "fail"])
+    if found["design"]:
+        table = new_table(["equipment", "as declared", "found", "why"], [])
+        for row in found["design"]:
+            table.add_row(row["item"], row["declared"], row["found"], row["why"])
+        console.print(table)
+    if found["remaining"]:
+        for row in found["remaining"][:MOST]:
+            console.print(f"remains, {row['case']}: {row['words']}")
+        if len(found["remaining"]) > MOST:
+            console.print(f"... and {len(found['remaining']) - MOST} more")
+    if found["changes"]:
+        console.print("try it: " + " ".join(f"--set '{change}'" for change in found["changes"]))
+
+
+def search_headline(found: Mapping[str, Any]) -> str:
+    """Return in one line what a search for equipment came to."""
+    effort = f"{found['runs']} runs, {found['rounds']} designs"
+    cost = f"{found['cost_found']:g} points against {found['cost_declared']:g} as declared"
+    if found["interrupted"]:
+        return f"SEARCH BROKEN OFF after {effort}: what stands below is not verified"
+    if not found["holds"]:
+        return f"NO DESIGN within the bounds meets all limits ({effort}); the nearest: {cost}"
+    if not found["design"]:
+        return f"NO LESS: what is declared meets all limits in {found['cases']} cases, and no item can be lessened ({effort})"
+    return f"FOUND: meets all limits in {found['cases']} cases, {cost} ({effort})"
 
 
 def headline(told: Mapping[str, Any]) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
 from tractionpower.cosimulation.useful_voltage_recorder import UsefulVoltageRecorder
@@ -17,6 +19,7 @@ from tractionpower.studies.ratings.useful import lowest_useful
 from tractionpower.studies.ratings.verdicts import ZONES, size_figures, size_verdicts
 from tractionpower.studies.ratings.watch import RatingsWatch
 from tractionpower.studies.runner.outcomes import rows_table
+from tractionpower.studies.sizing_search.search import SizingFound
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +107,11 @@ class SizingRun:
         said = {"kind": "size", "verdicts": verdicts, "size": size_notes(self.scenario, found)}
         figures = [*outcome.key_figures, *(figure.as_dict() for figure in size_figures(found))]
         return replace(outcome, run={**outcome.run, **said}, key_figures=figures)
+
+
+def with_search(run: Mapping[str, Any], found: SizingFound) -> dict[str, Any]:
+    """Return what ``run.json`` says of a study of ratings after a search for equipment."""
+    return {**run, "size": {**run["size"], "search": found.notes()}}
 
 
 def size(

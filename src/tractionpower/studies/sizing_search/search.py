@@ -10,7 +10,7 @@ from tractionpower.model.library import Library
 from tractionpower.model.scenario import Scenario
 from tractionpower.studies.runner.store import CaseStore
 from tractionpower.studies.sizing_search.climb import Climb, Step
-from tractionpower.studies.sizing_search.items import changes_of, cost_of, items_of
+from tractionpower.studies.sizing_search.items import Item, changes_of, cost_of, items_of
 from tractionpower.studies.sizing_search.shortfalls import Shortfall
 from tractionpower.studies.sizing_search.trials import Told, Trials
 
@@ -78,6 +78,21 @@ class SizingFound:
         }
 
 
+def varied_items(scenario: Scenario) -> dict[str, Item]:
+    """Return what a search varies, by name.
+
+    Raises
+    ------
+    UsageError
+        If there is nothing.
+    """
+    items = items_of(scenario)
+    if not items:
+        remedy = "give substations units and a unit_resistance_ohm, feeders cables, or name contact lines in sizing.search"
+        raise UsageError(f"the search has nothing to vary; {remedy}")
+    return items
+
+
 def search(
     scenario: Scenario,
     library: Library,
@@ -113,10 +128,7 @@ def search(
     UsageError
         If there is nothing to vary.
     """
-    items = items_of(scenario)
-    if not items:
-        remedy = "give substations units and a unit_resistance_ohm, feeders cables, or name contact lines in sizing.search"
-        raise UsageError(f"the search has nothing to vary; {remedy}")
+    items = varied_items(scenario)
     trials = Trials(
         scenario, library, items, CaseStore() if store is None else store, workers=workers, scheduler=scheduler, progress=progress
     )
