@@ -1,5 +1,6 @@
 """Tables of ratings and of outages made by hand, on any scenario: values that look as those of a line do."""
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -68,7 +69,7 @@ def _devices(scenario: Scenario) -> list[dict[str, Any]]:
             use = 0.35 + 0.05 * ((3 * k + j) % 11)
             name = f"{each.id} {track} {side}"
             found.append(at | {"device": name, "kind": "feeder", "track": track, "rated_current_a": 1500.0, "use": use})
-    for k, (low, high) in enumerate(zip(stations, stations[1:], strict=False)):
+    for k, (low, high) in enumerate(itertools.pairwise(stations)):
         ends = {"from_km": low.km, "to_km": high.km}
         for track in "12":
             name = f"track {track} km {low.km:g}-{high.km:g}"
@@ -156,7 +157,7 @@ def _demand(scenario: Scenario) -> list[dict[str, Any]]:
 
 def _zones(scenario: Scenario) -> list[tuple[str, str, str]]:
     names = [each.id for each in sorted(scenario.supply.substations, key=lambda each: each.km)]
-    return [(f"{low} - {high}", low, high) for low, high in zip(names, names[1:], strict=False)]
+    return [(f"{low} - {high}", low, high) for low, high in itertools.pairwise(names)]
 
 
 def _sharing(scenario: Scenario) -> list[dict[str, Any]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -15,9 +16,9 @@ from matplotlib.lines import Line2D
 from tractionpower.model.limits import common_limits
 from tractionpower.reporting.axes import draw_limits, mark_devices, panels_of_lines, voltage_range, with_margin
 from tractionpower.reporting.labels import LETTER
-from tractionpower.reporting.outages import COMPUTED, LATE_S, Outages
+from tractionpower.reporting.outages import COMPUTED, Outages
 from tractionpower.reporting.ratings_figures import TIGHT_PERCENT, margin_colour
-from tractionpower.reporting.style import BLUE, COLOURS, GREEN, GREY, INK, ORANGE, PALE, SKY, STYLE, VERMILION, new_figure
+from tractionpower.reporting.style import BLUE, GREEN, GREY, INK, ORANGE, PALE, SKY, STYLE, VERMILION, new_figure
 from tractionpower.reporting.window_words import window_words
 
 WIDTH = 11.7
@@ -63,7 +64,8 @@ def _envelope(outages: Outages, quantity: str, title: str) -> Figure | None:
     with mpl.rc_context(STYLE):
         height = 0.9 + 2.9 * len(tracks)
         figure = new_figure(WIDTH, height + 0.35 + 0.15 * texts)
-        above, below = figure.subfigures(2, 1, height_ratios=[height, 0.35 + 0.15 * texts])
+        parts: Any = figure.subfigures(2, 1, height_ratios=[height, 0.35 + 0.15 * texts])
+        above, below = parts
         panels = panels_of_lines(above, lines)
         for axes, track in zip(panels, tracks, strict=True):
             line = next(line for line in lines if track in line)
@@ -130,7 +132,7 @@ def _draw_rulers(axes: Axes, km: Any, cases: list[str], numbers: Mapping[str, in
     """Draw a strip below the lines: which case rules where, by its number."""
     low, high = axes.get_xlim()
     starts = [0, *(k for k in range(1, len(cases)) if cases[k] != cases[k - 1] or km[k] - km[k - 1] > GAP_KM), len(cases)]
-    for begin, end in zip(starts, starts[1:], strict=False):
+    for begin, end in itertools.pairwise(starts):
         left = km[begin] - 0.25 if begin == 0 or km[begin] - km[begin - 1] > GAP_KM else (km[begin - 1] + km[begin]) / 2
         right = km[end - 1] + 0.25 if end == len(km) or km[end] - km[end - 1] > GAP_KM else (km[end - 1] + km[end]) / 2
         number = numbers[cases[begin]]
@@ -222,7 +224,7 @@ def outage_delays(outages: Outages, title: str) -> Figure | None:
     trains = outages.table("case_trains")
     if trains.empty:
         return None
-    trains = trains[trains["added_late_s"] > _least(outages)]
+    trains = trains[trains["added_late_s"] > outages.tolerance_s]
     if trains.empty:
         return None
     worst = trains.groupby(trains["case"].astype(str))["added_late_s"].max().sort_values(ascending=False, kind="stable")
@@ -237,8 +239,8 @@ def outage_delays(outages: Outages, title: str) -> Figure | None:
             added = own["added_late_s"].to_numpy(float) / size
             colour, _ = GRID_STYLES.get(outages.by_id[case]["grid"], (GREY, "s"))
             axes.plot(added, np.full(len(added), float(k)), "o", color=colour, alpha=0.45, markersize=4.5, markeredgewidth=0)
-            most = own.loc[own["added_late_s"].idxmax()]
-            text = f"{most['train']}; {len(own)} train{'s' if len(own) > 1 else ''}"
+            most = own["train"].iloc[int(added.argmax())]
+            text = f"{most}; {len(own)} train{'s' if len(own) > 1 else ''}"
             axes.annotate(text, (added.max(), k), (6, 0), textcoords="offset points", va="center", fontsize=6.5, color=INK)
         axes.set_xlim(0.0, 1.35 * worst.iloc[0] / size)
         _name_rows(axes, [outages.told(case) for case in cases])
@@ -258,12 +260,6 @@ def _grid_legend(figure: Figure, outages: Outages, cases: Sequence[str]) -> None
         figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=8)
 
 
-def _least(outages: Outages) -> float:
-    """Return from what on an added lateness shows: the tolerance [s]."""
-    told = outages.results.run.get("contingency") or {}
-    return float(told.get("tolerance_s") or LATE_S)
-
-
 def worst_utilisation(outages: Outages, title: str) -> Figure | None:
     """Draw the utilisation of devices without outage and in the worst one, which is named, those with the highest."""
     rows = outages.table("device_envelope")
@@ -275,14 +271,14 @@ def worst_utilisation(outages: Outages, title: str) -> Figure | None:
     with mpl.rc_context(STYLE):
         figure = new_figure(WIDTH, 1.4 + ROW * max(len(shown), 4))
         axes = figure.add_subplot()
-        for k, row in enumerate(shown.itertuples(index=False)):
-            colour = margin_colour(row.utilisation_percent, permitted)
-            if np.isfinite(row.base_percent):
-                axes.plot([row.base_percent, row.utilisation_percent], [k, k], color=GREY, linewidth=1.0, zorder=1)
-                axes.plot([row.base_percent], [k], "o", color=BLUE, markersize=4.5, markerfacecolor="white")
-            axes.plot([row.utilisation_percent], [k], "o", color=colour, markersize=5.0)
-            text = f"{row.utilisation_percent:.0f} %, {window_words(row.window_s)}: {outages.told(row.case)}"
-            axes.annotate(text, (row.utilisation_percent, k), (6, 0), textcoords="offset points", va="center", fontsize=6.5)
+        for k, row in enumerate(shown.to_dict("records")):
+            base, use = float(row["base_percent"]), float(row["utilisation_percent"])
+            if np.isfinite(base):
+                axes.plot([base, use], [k, k], color=GREY, linewidth=1.0, zorder=1)
+                axes.plot([base], [k], "o", color=BLUE, markersize=4.5, markerfacecolor="white")
+            axes.plot([use], [k], "o", color=margin_colour(use, permitted), markersize=5.0)
+            text = f"{use:.0f} %, {window_words(row['window_s'])}: {outages.told(row['case'])}"
+            axes.annotate(text, (use, k), (6, 0), textcoords="offset points", va="center", fontsize=6.5)
         axes.axvline(permitted, color=INK, linewidth=0.9, linestyle=(0, (5, 3)))
         axes.set_xlim(0.0, 1.6 * max(float(shown["utilisation_percent"].max()), permitted))
         _name_rows(axes, [str(device) for device in shown["device"]])

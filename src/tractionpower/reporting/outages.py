@@ -15,6 +15,7 @@ from tractionpower.model.limits import Limit, find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.places import LinePlaces
 from tractionpower.results.results import Results
+from tractionpower.studies.cases.judgement import Check, checks_of
 
 KIND_WORDS = {
     "base": "nothing is out",
@@ -40,21 +41,16 @@ KINDS_WORDS = {
 }
 GRIDS = ("normal", "low", "high")
 COMPUTED = ("complete", "flagged")
-LATE_S = 1.0
-"""Trains later than this count as late where the study tells no tolerance [s]."""
+NOT_COMPUTED = "not computed"
 
-FAILURES = {
-    "lowest voltage": ("lowest_voltage_v", 1.0),
-    "highest voltage": ("highest_voltage_v", -1.0),
-    "mean useful voltage of a zone": ("useful_zone_v", 1.0),
-    "mean useful voltage of a train": ("useful_train_v", 1.0),
-    "ratings": ("utilisation_percent", -1.0),
-    "delays": ("worst_late_s", -1.0),
-    "stuck trains": ("stuck_trains", -1.0),
-    "breakers": ("trips", -1.0),
-    "flagged steps": ("flagged_steps", -1.0),
+_OF = {
+    "lowest_voltage_v": "",
+    "useful_zone_v": "zone {useful_zone}",
+    "useful_train_v": "train {useful_train}",
+    "utilisation_percent": "{utilisation_device}",
+    "worst_late_s": "train {worst_late_train}",
 }
-"""What a case can fail at, in the order of the reports: the figure that tells how badly, and its sign: the lowest is worst."""
+"""Of what the figure of a case is, in words."""
 
 _KM = re.compile(r"km (-?[\d.]+)(?:\s*(?:-|–|to)\s*(-?[\d.]+))?")
 _TRACK = re.compile(r"\btrack (\S+)")
@@ -105,7 +101,7 @@ class Outages:
             return rows
         for name in ("case", "kind", "subject", "mode", "grid", "status", "reason"):
             rows[name] = rows[name].astype(str)
-        rows["words"] = [self.words(row) for row in rows[["kind", "subject", "mode", "case"]].itertuples(index=False)]
+        rows["words"] = [self.words(row) for row in rows.to_dict("records")]
         rows["at_km"] = [self.place(subject) for subject in rows["subject"]]
         kinds = {kind: number for number, kind in enumerate(KIND_WORDS)}
         grids = {grid: number for number, grid in enumerate(GRIDS)}
@@ -116,18 +112,19 @@ class Outages:
         return rows.sort_values(keys, kind="stable").drop(columns=["_kind", "_grid"]).reset_index(drop=True)
 
     @staticmethod
-    def words(row: Any) -> str:
+    def words(row: Mapping[Any, Any]) -> str:
         """Return in words what is out in a case."""
-        if row.kind == "base":
+        if row["kind"] == "base":
             return KIND_WORDS["base"]
-        if row.kind == "pair":
-            parts = zip(row.subject.split(" + "), row.mode.split(" + "), strict=False)
-            return " and ".join(_out("", subject, mode) for subject, mode in parts) or row.case
-        return _out(row.kind, row.subject or row.case, row.mode)
+        if row["kind"] == "pair":
+            parts = zip(row["subject"].split(" + "), row["mode"].split(" + "), strict=False)
+            return " and ".join(_out("", subject, mode) for subject, mode in parts) or str(row["case"])
+        return _out(row["kind"], row["subject"] or row["case"], row["mode"])
 
     def place(self, subject: str) -> float:
         """Return the kilometre of what is out, not a number if its name does not tell."""
-        stations = {each.id: each.km for each in (*self.scenario.supply.substations, *self.scenario.supply.section_cabins)}
+        supply = self.scenario.supply
+        stations = {each.id: each.km for each in supply.substations} | {each.id: each.km for each in supply.section_cabins}
         named = [name for name in stations if subject == name or subject.startswith((f"{name} ", f"{name},"))]
         if named:
             return float(stations[max(named, key=len)])
@@ -137,11 +134,6 @@ class Outages:
         ends = [float(text.rstrip(".")) for text in found.groups() if text]
         return sum(ends) / len(ends)
 
-    def line_of(self, case: Mapping[str, Any]) -> int:
-        """Return the number of the line where the lowest voltage of a case stands, 0 if it is unknown."""
-        track = str(case.get("lowest_voltage_track") or "")
-        return max(0, self.places.number_of(track)) if track else 0
-
     @cached_property
     def grids(self) -> list[str]:
         """The grid voltages that were looked at, normal first."""
@@ -150,8 +142,8 @@ class Outages:
 
     @cached_property
     def by_id(self) -> dict[str, dict[str, Any]]:
-        """The cases by identifier."""
-        return {str(row["case"]): {str(key): value for key, value in row.items()} for row in self.cases.to_dict("records")}
+        """The cases by identifier, None where a figure has no value."""
+        return {str(row["case"]): _known(row) for row in self.cases.to_dict("records")}
 
     def told(self, case: str) -> str:
         """Return a case in words, with its grid voltage where that is not the normal one."""
@@ -163,18 +155,12 @@ class Outages:
     def groups(self) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Any]]]]:
         """Yield each outage once, the base first: what is out, and its cases by grid voltage."""
         for _, rows in self.cases.groupby(["kind", "subject", "mode", "words"], sort=False, dropna=False):
-            own = [{str(key): value for key, value in row.items()} for row in rows.to_dict("records")]
+            own = [self.by_id[str(case)] for case in rows["case"]]
             yield own[0], {row["grid"]: row for row in own}
 
     def limit(self, name: str) -> Limit | None:
         """Return a limit of the study's system."""
         return find_limit(self.scenario.limits, self.scenario.supply.system, name)
-
-    @cached_property
-    def useful_limit(self) -> Limit | None:
-        """The lowest mean useful voltage of the class of the line."""
-        high_speed = self.scenario.sizing.useful_voltage.line_class == "high_speed"
-        return (self.limit("u_useful_high_speed") if high_speed else None) or self.limit("u_useful")
 
     @cached_property
     def added_s(self) -> dict[str, tuple[float, str]]:
@@ -189,50 +175,48 @@ class Outages:
             for case, seconds, train in zip(worst["case"], worst["added_late_s"], worst["train"], strict=True)
         }
 
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """What the cases are held against."""
+        return checks_of(self.scenario)
+
     def failures(self, case: Mapping[str, Any]) -> list[Failure]:
         """Return what a case fails at; none for one that holds. One that was not computed fails at that."""
         if case["status"] not in COMPUTED:
             reason = " ".join(str(case["reason"]).split())
-            return [Failure("not computed", f"{case['status']}: {reason}" if reason else str(case["status"]))]
-        found = list(self._voltages(case))
-        counts = (
-            ("overloaded", "ratings", "device{} beyond the rating"),
-            ("late_trains", "delays", "train{} late"),
-            ("stuck_trains", "stuck trains", "train{} stuck"),
-            ("trips", "breakers", "trip{} of breakers"),
-            ("flagged_steps", "flagged steps", "step{} flagged"),
-        )
-        for name, what, words in counts:
-            many = _number(case, name)
-            if many > 0.0:
-                found.append(Failure(what, f"{many:.0f} {words.format('s' if many > 1 else '')}"))
-        return found
+            return [Failure(NOT_COMPUTED, f"{case['status']}: {reason}" if reason else str(case["status"]))]
+        return [Failure(check.name, _missed(check, case)) for check in self.checks if not check.is_met(case)]
+
+    def is_worse(self, case: Mapping[str, Any]) -> bool:
+        """Return whether an outage fails at something that holds with nothing out at the same grid voltage."""
+        base = next((row for row in self.by_id.values() if row["kind"] == "base" and row["grid"] == case["grid"]), None)
+        known = set() if base is None else {failure.what for failure in self.failures(base)}
+        return any(failure.what not in known for failure in self.failures(case))
 
     def failing(self) -> dict[str, list[tuple[str, str]]]:
         """Return for each thing that outages fail at the cases with it, the worst first, each with how it stands in words."""
-        found: dict[str, list[tuple[str, str]]] = {what: [] for what in FAILURES}
-        for case in self.by_id.values():
-            if case["kind"] != "base" and case["status"] in COMPUTED:
-                for failure in self.failures(case):
-                    found[failure.what].append((case["case"], failure.words))
-        for what, cases in found.items():
-            name, sign = FAILURES[what]
-            severity = {case: sign * _number(self.by_id[case], name) for case, _ in cases}
-            cases.sort(key=lambda each: np.nan_to_num(severity[each[0]], nan=np.inf))  # noqa: B023 - sorted at once
-        return {what: cases for what, cases in found.items() if cases}
+        found = {}
+        rows = [row for row in self.by_id.values() if row["kind"] != "base" and row["status"] in COMPUTED]
+        for check in self.checks:
+            missed = [row for row in rows if not check.is_met(row)]
+            missed.sort(key=lambda row, check=check: row[check.figure] if check.is_floor else -row[check.figure])  # type: ignore[misc]
+            if missed:
+                found[check.name] = [(row["case"], _missed(check, row)) for row in missed]
+        return found
 
-    def _voltages(self, case: Mapping[str, Any]) -> Iterator[Failure]:
-        low, high, useful = self.limit("u_min2"), self.limit("u_max2"), self.useful_limit
-        lowest, highest = _number(case, "lowest_voltage_v"), _number(case, "highest_voltage_v")
-        if low is not None and lowest < low.value:
-            yield Failure("lowest voltage", f"{lowest:.0f} V, below U_min2 {low.value:g} V")
-        if high is not None and highest > high.value:
-            yield Failure("highest voltage", f"{highest:.0f} V, above U_max2 {high.value:g} V")
-        for of, name in (("zone", "useful_zone"), ("train", "useful_train")):
-            volts = _number(case, f"{name}_v")
-            if useful is not None and volts < useful.value:
-                words = f"{volts:.0f} V in {of} {case[name]}, below {useful.value:g} V"
-                yield Failure(f"mean useful voltage of a {of}", words)
+    @property
+    def tolerance_s(self) -> float:
+        """Lateness that is accepted [s]."""
+        return self.scenario.feasibility.tolerance_s
+
+
+def _missed(check: Check, case: Mapping[str, Any]) -> str:
+    """Return in words how a limit is missed."""
+    value, unit = case[check.figure], f" {check.unit}" if check.unit else ""
+    of = _OF.get(check.figure, "").format(**case)
+    side = "below" if check.is_floor else "above"
+    shown = f"{value:.0f}" if abs(value - check.value) >= 1.0 else f"{value:.1f}"
+    return f"{shown}{unit}{f' ({of})' if of else ''}, {side} {check.value:g}{unit}"
 
 
 def _out(kind: str, subject: str, mode: str) -> str:
@@ -249,6 +233,10 @@ def _out(kind: str, subject: str, mode: str) -> str:
     named = subject if told else f"{words} {subject}"
     state = mode.replace("_", " ")
     return f"{named}, {state}" if state and state != "dead" else named
+
+
+def _known(row: Mapping[Any, Any]) -> dict[str, Any]:
+    return {str(key): None if pd.isna(value) else value for key, value in row.items()}
 
 
 def worst(cases: Sequence[Mapping[str, Any]], name: str, *, lowest: bool = False) -> Mapping[str, Any] | None:

@@ -174,16 +174,17 @@ def sharing(data: RunData) -> Figure | None:
 def _draw_zone(shares: Axes, currents: Axes, rows: pd.DataFrame, number: int) -> None:
     """Draw the zone of a row: the shares in one bar, the currents of the two below each other."""
     left = 0.0
-    both = rows[["share_percent", "mean_current_a", "highest_current_a"]].itertuples(index=False)
-    for k, (row, colour) in enumerate(zip(both, (BLUE, ORANGE), strict=False)):
-        if np.isfinite(row.share_percent):
-            shares.barh(number, row.share_percent, 0.7, left=left, color=colour)
-            inside = f"{row.share_percent:.0f} %"
-            shares.text(left + row.share_percent / 2, number, inside, ha="center", va="center", color="white", fontsize=7)
-            left += row.share_percent
+    for k, (row, colour) in enumerate(zip(rows.to_dict("records"), (BLUE, ORANGE), strict=False)):
+        share, highest = float(row["share_percent"]), float(row["highest_current_a"])
+        if np.isfinite(share):
+            left = left if share > 0.0 else 0.0
+            shares.barh(number, share, 0.7, left=left, color=colour)
+            style: Any = {"ha": "center", "va": "center", "color": "white" if colour == BLUE else INK, "fontsize": 7}
+            shares.text(left + share / 2, number, f"{share:.0f} %", **style)
+            left += max(share, 0.0)
         at = number + 0.36 * (k - 0.5)
-        currents.barh(at, np.nan_to_num(row.mean_current_a), 0.32, color=colour)
-        currents.plot([row.highest_current_a] * 2, [at - 0.15, at + 0.15], color=colour, linewidth=1.6)
+        currents.barh(at, np.nan_to_num(float(row["mean_current_a"])), 0.32, color=colour)
+        currents.plot([highest] * 2, [at - 0.15, at + 0.15], color=colour, linewidth=1.6)
 
 
 def demand(data: RunData) -> Figure | None:

@@ -1,4 +1,4 @@
-"""The workbook of a run or of a study of outages, for people: cover with verdicts in words, inputs as used, tables, native charts, definitions."""
+"""Workbooks for people, of a run or of outages: cover with verdicts in words, inputs as used, tables, charts, definitions."""
 # ruff: noqa: PLC0415 - openpyxl is imported when a workbook is written
 
 from __future__ import annotations

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from openpyxl.formatting.rule import FormulaRule
 
@@ -100,7 +101,7 @@ def _demand(book: Book) -> None:
 def _summary(name: str, rows: pd.DataFrame) -> tuple[Any, ...]:
     if rows["power_kw"].isna().all():
         return name, None, None, rows["contract_power_kw"].max(), 0, None
-    most = rows.loc[rows["power_kw"].idxmax()]
+    most = rows.iloc[int(rows["power_kw"].fillna(-np.inf).argmax())]
     beyond = int((rows["met"].astype(str) == "no").sum())
     return name, most["power_kw"], most["from_s"], most["contract_power_kw"], beyond, rows["power_kw"].mean()
 

@@ -24,7 +24,8 @@ def fill(book: Book, page: Page, outages: Outages) -> None:
 def _head(facts: Facts, outages: Outages) -> Iterator[Said]:
     cases = outages.cases
     own = cases[cases["kind"] != "base"].drop_duplicates(["kind", "subject", "mode"])
-    counts = [f"{KINDS_WORDS.get(kind, kind).lower()} {many}" for kind, many in own.groupby("kind", sort=False).size().items()]
+    kinds = [str(kind) for kind in own["kind"]]
+    counts = [f"{KINDS_WORDS.get(kind, kind).lower()} {kinds.count(kind)}" for kind in dict.fromkeys(kinds)]
     grids = f", each at {', '.join(outages.grids)} grid voltage" if len(outages.grids) > 1 else ""
     clock = facts.scenario.clock
     yield "What was computed", f"{len(own)} outages{grids}: {', '.join(counts)}; {len(cases)} cases.", "wrapped"
@@ -34,12 +35,14 @@ def _head(facts: Facts, outages: Outages) -> Iterator[Said]:
 
 def _verdicts(facts: Facts, outages: Outages) -> Iterator[Said]:
     groups = list(outages.groups())
-    failing = [first for first, cases in groups if first["kind"] != "base" and any(map(outages.failures, cases.values()))]
-    every = sum(first["kind"] != "base" for first, _ in groups)
+    outs = [cases for first, cases in groups if first["kind"] != "base"]
+    failing = [cases for cases in outs if any(map(outages.failures, cases.values()))]
+    worse = sum(any(map(outages.is_worse, cases.values())) for cases in failing)
     if failing:
-        yield "Verdict", f"{len(failing)} of {every} outages fail", "big bad"
-    elif every:
-        yield "Verdict", f"All {every} outages hold", "big good"
+        beyond = f", {worse} of them at something that holds with nothing out" if worse < len(failing) else ""
+        yield "Verdict", f"{len(failing)} of {len(outs)} outages fail{beyond}", "big bad"
+    elif outs:
+        yield "Verdict", f"All {len(outs)} outages hold", "big good"
     else:
         yield "Verdict", "No outage was looked at", "big doubt"
     base = [case for first, cases in groups if first["kind"] == "base" for case in cases.values()]
@@ -57,7 +60,7 @@ def _failing(outages: Outages) -> Iterator[Said]:
     for what, cases in outages.failing().items():
         named = "\n".join(f"{outages.told(case)}: {words}" for case, words in cases[:MOST_NAMED])
         more = f"\nand {len(cases) - MOST_NAMED} more cases, see sheet Outages" if len(cases) > MOST_NAMED else ""
-        yield f"Fails at {what}", f"{named}{more}", "bad"
+        yield f"Fails at: {what}", f"{named}{more}", "bad"
 
 
 def _trust(outages: Outages) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 from openpyxl.formatting.rule import CellIsRule
 
-from tractionpower.reporting.outages import LATE_S, Outages
+from tractionpower.reporting.outages import Outages
 from tractionpower.reporting.workbook.cells import AMBER_FILL, RED_FILL, fill
 from tractionpower.reporting.workbook.page import Book, Column
 
@@ -21,7 +21,7 @@ def add(book: Book, outages: Outages) -> None:
     rows = outages.table("case_trains")
     if rows.empty:
         return
-    least = tolerance(outages)
+    least = outages.tolerance_s
     rows = rows[(rows["added_late_s"] > least) | (rows["status"] == "stuck")]
     page = book.page("Delays in outages", "Delays in outages: trains that are later than without the outage")
     page.note(
@@ -49,12 +49,6 @@ def add(book: Book, outages: Outages) -> None:
         block.sheet.conditional_formatting.add(block.cells(ADDED), rule)
 
 
-def tolerance(outages: Outages) -> float:
-    """Return the lateness that is accepted [s]."""
-    told: dict[str, Any] = outages.results.run.get("contingency") or {}
-    return float(told.get("tolerance_s") or LATE_S)
-
-
 _SUMS = (
     Column("what is out", widest=60),
     Column("trains delayed", "0"),
@@ -76,7 +70,7 @@ def _sums(outages: Outages, rows: pd.DataFrame) -> list[tuple[Any, ...]]:
     found = []
     for case, own in rows.groupby(rows["case"].astype(str), sort=False):
         added = own["added_late_s"]
-        most = own.loc[added.idxmax(), "train"] if added.notna().any() else ""
+        most = own["train"].iloc[int(added.fillna(-1.0).argmax())]
         stuck = int((own["status"].astype(str) == "stuck").sum())
         found.append((outages.told(str(case)), len(own), added.max(), most, added.sum(), stuck))
     return sorted(found, key=lambda row: -row[1] if row[2] != row[2] else -row[2])

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
-from tractionpower.reporting.outages import COMPUTED, KINDS_WORDS, Outages, worst
+from tractionpower.reporting.outages import COMPUTED, KINDS_WORDS, NOT_COMPUTED, Outages, worst
 from tractionpower.reporting.workbook.cells import RED_FILL, fill
 from tractionpower.reporting.workbook.page import Block, Book, Column
 from tractionpower.reporting.workbook.ratings import HOLDS, colour_use, colour_word
@@ -28,10 +28,11 @@ def add(book: Book, outages: Outages) -> None:
     page.note(
         "A row for each outage, with the worst of all grid voltages where none is named; grouped by kind, along the line. Lowest"
         " voltage: at trains, loads and cross-sections that are fed. Added delay: how much later than without the outage, at the"
-        " same grid voltage, the most delayed train is at a timed call. An outage holds if no limit of sheet Limits, no rating and"
-        " no tolerance of lateness is passed, no breaker trips and all its cases were computed; Why tells what it fails at, and at which grid voltage."
+        " same grid voltage, the most delayed train is at a timed call. An outage holds if no limit of the voltage, no rating and"
+        " no tolerance of lateness is passed and all its cases were computed; trips of breakers are told, not judged."
     )
     block = page.table(_columns(outages), [_row(outages, first, cases) for first, cases in outages.groups()], frozen=True)
+    colour_word(block, HOLDS)
     _colour(block, outages)
     _every(book, outages)
 
@@ -93,7 +94,7 @@ def _verdict(outages: Outages, cases: Mapping[str, Case]) -> tuple[str, str]:
     found: dict[str, list[str]] = {}
     for grid, case in cases.items():
         for failure in outages.failures(case):
-            found.setdefault(failure.words if failure.what == "not computed" else failure.what, []).append(grid)
+            found.setdefault(failure.words if failure.what == NOT_COMPUTED else failure.what, []).append(grid)
     if not found:
         return "yes", ""
     if len(outages.grids) == 1:
@@ -103,16 +104,15 @@ def _verdict(outages: Outages, cases: Mapping[str, Case]) -> tuple[str, str]:
 
 
 def _colour(block: Block, outages: Outages) -> None:
-    colour_word(block, HOLDS)
-    low, useful = outages.limit("u_min2"), outages.useful_limit
+    floors = {check.figure: check.value for check in outages.checks if check.is_floor}
+    figures = {LOWEST: "lowest_voltage_v", ZONE: "useful_zone_v", TRAIN: "useful_train_v"}
     for heading in block.headings:
+        figure = next((name for words, name in figures.items() if heading.startswith(words)), None)
         if heading.startswith(USE):
             colour_use(block, heading, outages.scenario.sizing.utilisation_percent)
-        elif heading.startswith(LOWEST) and low is not None:
-            _red(block, heading, f"<{low.value!r}")
-        elif heading in (ZONE, TRAIN) and useful is not None:
-            _red(block, heading, f"<{useful.value!r}")
-        elif heading.startswith(("late trains", "trips")):
+        elif figure in floors:
+            _red(block, heading, f"<{floors[figure]!r}")
+        elif heading.startswith(("late trains", "stuck", "trips", "devices beyond")):
             _red(block, heading, ">0")
 
 
@@ -154,22 +154,17 @@ _CASES: tuple[tuple[Column, str], ...] = (
 def _every(book: Book, outages: Outages) -> None:
     page = book.page("All cases", "All cases: every outage at every grid voltage")
     page.note(
-        "`tractionpower run STUDY` with the changes of table case_changes repeats a case with all its tables. A case that failed or"
-        " was refused has no figures."
+        "`tractionpower run STUDY` with the changes of table case_changes repeats a case with all its tables. A case that failed"
+        " or was refused has no figures."
     )
     counts = {"overloaded", "late_trains", "stuck_trains", "trips"}
     rows = (
         [None if name in counts and row["status"] not in COMPUTED else _plain(row[name]) for _, name in _CASES]
-        for row in outages.cases.to_dict("records")
+        for row in outages.by_id.values()
     )
     block = page.table([column for column, _ in _CASES], rows, frozen=True)
     _colour_status(block)
-    for heading, limit in ((LOWEST, outages.limit("u_min2")), (ZONE, outages.useful_limit), (TRAIN, outages.useful_limit)):
-        if limit is not None:
-            _red(block, heading, f"<{limit.value!r}")
-    colour_use(block, USE, outages.scenario.sizing.utilisation_percent)
-    for heading in ("devices beyond their rating", "late trains", "stuck trains", "trips"):
-        _red(block, heading, ">0")
+    _colour(block, outages)
 
 
 def _colour_status(block: Block) -> None:

@@ -88,7 +88,7 @@ def ratings_in_words(ruling: pd.DataFrame, permitted: float) -> tuple[str, str]:
     without = f"; {bare} more have no rating and are not judged" if bare else ""
     if rated.empty:
         return f"None of {len(ruling)} devices has a rating", "doubt"
-    worst = rated.loc[rated["utilisation_percent"].idxmax()]
+    worst = rated.iloc[int(rated["utilisation_percent"].argmax())]
     words = f"{worst['device']}, {worst['utilisation_percent']:.0f} % in {_window(worst['window_s'])}"
     over = rated[rated["met"].astype(str) == "no"]
     if len(over):

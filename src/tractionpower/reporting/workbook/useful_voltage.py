@@ -114,7 +114,7 @@ def _hourly(page: Page, rows: pd.DataFrame, name: str, words: str) -> None:
     limit = rows["limit_v"].max()
     if limit > 0.0 and zones:
         area = f"{block.cells(zones[0]).split(':')[0]}:{block.cells(zones[-1]).split(':')[1]}"
-        first = area.split(":")[0]
+        first = area.split(":", maxsplit=1)[0]
         rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{first}<{float(limit)!r})"], fill=fill(RED_FILL))
         block.sheet.conditional_formatting.add(area, rule)
 
