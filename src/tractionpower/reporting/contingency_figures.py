@@ -137,7 +137,7 @@ def _draw_rulers(axes: Axes, km: Any, cases: list[str], numbers: Mapping[str, in
         right = km[end - 1] + 0.25 if end == len(km) or km[end] - km[end - 1] > GAP_KM else (km[end - 1] + km[end]) / 2
         number = numbers[cases[begin]]
         colour = (SKY, PALE, ORANGE, "#bbd9a5")[number % 4]
-        axes.axvspan(left, right, 0.0, 0.075, color=colour, linewidth=0, zorder=0.8)
+        axes.axvspan(left, right, 0.0, 0.075, facecolor=colour, edgecolor="white", linewidth=0.8, zorder=0.8)
         if (right - left) / (high - low) * inches > LETTER * (len(str(number)) + 0.4):
             at = ((left + right) / 2, 0.036)
             style: Any = {"xycoords": ("data", "axes fraction"), "ha": "center", "va": "center", "fontsize": 7, "color": INK}

@@ -52,7 +52,7 @@ def outage_maps(outages: Outages, title: str) -> Iterator[tuple[str, Figure]]:
         for number, tracks in enumerate(lines):
             for part, rows, words in _parts(outages, grid):
                 ends = ("" if grid == "normal" else f"_{grid}") + (f"_line_{number + 1}" if len(lines) > 1 else "")
-                what = f"{title}: lowest voltage along the line in every outage, {grid} grid voltage"
+                what = f"{title}: lowest voltage of all tracks in every outage, {grid} grid voltage"
                 line_words = f", {told(tracks)}" if len(lines) > 1 else ""
                 figure = _draw(outages, rows, tracks, classes, f"{what}{line_words}{words}")
                 yield f"{MAP}{ends}{part}", figure
@@ -92,8 +92,7 @@ def _draw(outages: Outages, rows: pd.DataFrame, tracks: Sequence[str], classes: 
         figure = new_figure(WIDTH, 1.7 + ROW * max(len(rows), 14))
         axes = figure.add_subplot()
         edges, volts = _grid(own, list(rows["case"]), low, high)
-        colours = mpl.colormaps["viridis"].copy()
-        colours.set_under(VERMILION)
+        colours = mpl.colormaps["viridis"].with_extremes(under=VERMILION)
         norm = BoundaryNorm(classes, colours.N)
         below = bool((volts[np.isfinite(volts)] < classes[0]).any())
         mesh = axes.pcolormesh(edges, np.arange(len(rows) + 1), volts, cmap=colours, norm=norm)

@@ -61,9 +61,10 @@ _UNITS = re.compile(r"(\d+ of \d+)")
 
 @dataclass(frozen=True)
 class Failure:
-    """What a case fails at: what is judged, and how it stands in words."""
+    """What a case fails at: what is judged, in a word what is wrong, and how it stands."""
 
     what: str
+    short: str
     words: str
 
 
@@ -154,6 +155,8 @@ class Outages:
 
     def groups(self) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Any]]]]:
         """Yield each outage once, the base first: what is out, and its cases by grid voltage."""
+        if self.cases.empty:
+            return
         for _, rows in self.cases.groupby(["kind", "subject", "mode", "words"], sort=False, dropna=False):
             own = [self.by_id[str(case)] for case in rows["case"]]
             yield own[0], {row["grid"]: row for row in own}
@@ -184,8 +187,9 @@ class Outages:
         """Return what a case fails at; none for one that holds. One that was not computed fails at that."""
         if case["status"] not in COMPUTED:
             reason = " ".join(str(case["reason"]).split())
-            return [Failure(NOT_COMPUTED, f"{case['status']}: {reason}" if reason else str(case["status"]))]
-        return [Failure(check.name, _missed(check, case)) for check in self.checks if not check.is_met(case)]
+            words = f"{case['status']}: {reason}" if reason else str(case["status"])
+            return [Failure(NOT_COMPUTED, words, words)]
+        return [Failure(check.name, check.word, _missed(check, case)) for check in self.checks if not check.is_met(case)]
 
     def is_worse(self, case: Mapping[str, Any]) -> bool:
         """Return whether an outage fails at something that holds with nothing out at the same grid voltage."""
@@ -216,6 +220,8 @@ def _missed(check: Check, case: Mapping[str, Any]) -> str:
     of = _OF.get(check.figure, "").format(**case)
     side = "below" if check.is_floor else "above"
     shown = f"{value:.0f}" if abs(value - check.value) >= 1.0 else f"{value:.1f}"
+    if not unit:
+        return f"{shown}, permitted {check.value:g}"
     return f"{shown}{unit}{f' ({of})' if of else ''}, {side} {check.value:g}{unit}"
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
-from tractionpower.reporting.outages import COMPUTED, KINDS_WORDS, NOT_COMPUTED, Outages, worst
+from tractionpower.reporting.outages import COMPUTED, KINDS_WORDS, Outages, worst
 from tractionpower.reporting.workbook.cells import RED_FILL, fill
 from tractionpower.reporting.workbook.page import Block, Book, Column
 from tractionpower.reporting.workbook.ratings import HOLDS, colour_use, colour_word
@@ -31,10 +31,21 @@ def add(book: Book, outages: Outages) -> None:
         " same grid voltage, the most delayed train is at a timed call. An outage holds if no limit of the voltage, no rating and"
         " no tolerance of lateness is passed and all its cases were computed; trips of breakers are told, not judged."
     )
-    block = page.table(_columns(outages), [_row(outages, first, cases) for first, cases in outages.groups()], frozen=True)
+    rows = [_row(outages, first, cases) for first, cases in outages.groups()]
+    block = page.table(*_filled(_columns(outages), rows), frozen=True)
     colour_word(block, HOLDS)
     _colour(block, outages)
     _every(book, outages)
+
+
+def _filled(columns: Sequence[Column], rows: Sequence[Sequence[Any]]) -> tuple[list[Column], list[list[Any]]]:
+    """Return columns and rows without the columns that are empty in every row: studies without ratings have many."""
+    kept = [k for k in range(len(columns)) if k < KEPT or any(row[k] is not None and row[k] != "" for row in rows)]
+    return [columns[k] for k in kept], [[row[k] for k in kept] for row in rows]
+
+
+KEPT = 4
+"""Columns that stay even where they are empty."""
 
 
 def _columns(outages: Outages) -> list[Column]:
@@ -43,7 +54,7 @@ def _columns(outages: Outages) -> list[Column]:
         Column("what is out", widest=48),
         Column("kind", widest=20),
         Column(HOLDS, "beside"),
-        Column("why, and at which grid voltage", widest=64),
+        Column("why, and at which grid voltage", widest=50),
         *(Column(f"{LOWEST}{grid}", "0") for grid in grids),
         Column("on track", "beside"),
         Column("at [km]", "0.0"),
@@ -53,7 +64,7 @@ def _columns(outages: Outages) -> list[Column]:
         Column(TRAIN, "0"),
         Column("train", "beside", 18),
         *(Column(f"{USE}{grid}", "0.0") for grid in grids),
-        Column("device", "beside", 24),
+        Column("device", "beside", 34),
         *(Column(f"late trains{grid}", "0") for grid in grids),
         Column("added delay, at most [s]", "0"),
         Column("train that is delayed most", "beside", 18),
@@ -94,7 +105,8 @@ def _verdict(outages: Outages, cases: Mapping[str, Case]) -> tuple[str, str]:
     found: dict[str, list[str]] = {}
     for grid, case in cases.items():
         for failure in outages.failures(case):
-            found.setdefault(failure.words if failure.what == NOT_COMPUTED else failure.what, []).append(grid)
+            grids = found.setdefault(failure.short, [])
+            grids += [grid] if grid not in grids else []
     if not found:
         return "yes", ""
     if len(outages.grids) == 1:
@@ -136,7 +148,7 @@ _CASES: tuple[tuple[Column, str], ...] = (
     (Column(ZONE, "0"), "useful_zone_v"),
     (Column(TRAIN, "0"), "useful_train_v"),
     (Column(USE, "0.0"), "utilisation_percent"),
-    (Column("device", "beside", 24), "utilisation_device"),
+    (Column("device", "beside", 34), "utilisation_device"),
     (Column("devices beyond their rating", "0"), "overloaded"),
     (Column("late trains", "0"), "late_trains"),
     (Column("latest [s]", "0"), "worst_late_s"),
@@ -158,11 +170,11 @@ def _every(book: Book, outages: Outages) -> None:
         " or was refused has no figures."
     )
     counts = {"overloaded", "late_trains", "stuck_trains", "trips"}
-    rows = (
+    rows = [
         [None if name in counts and row["status"] not in COMPUTED else _plain(row[name]) for _, name in _CASES]
         for row in outages.by_id.values()
-    )
-    block = page.table([column for column, _ in _CASES], rows, frozen=True)
+    ]
+    block = page.table(*_filled([column for column, _ in _CASES], rows), frozen=True)
     _colour_status(block)
     _colour(block, outages)
 

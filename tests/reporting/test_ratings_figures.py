@@ -1,0 +1,110 @@
+"""Figures of ratings and useful voltages: they show the tables, and stay readable with many devices."""
+
+import numpy as np
+import pytest
+from fake_results import make_case
+from fake_sizing import sized
+
+from tractionpower.reporting import ratings_figures as figures
+from tractionpower.reporting.run_data import RunData
+from tractionpower.reporting.style import GREEN, ORANGE, VERMILION
+from tractionpower.reporting.useful_figures import colour_classes, text_colour, useful_voltage_zones
+from tractionpower.reporting.window_words import window_words
+from tractionpower.results.results import Results
+
+
+def data_of(**case):
+    results, scenario = make_case(**case)
+    return RunData(sized(results, scenario), scenario)
+
+
+@pytest.fixture(scope="module")
+def data():
+    return data_of()
+
+
+def test_utilisation_shows_every_rated_device_in_its_ruling_window(data):
+    rows = data.table("ratings")
+    rows = rows[rows["ruling"]].set_index("device")
+    shown = {}
+    for axes in figures.utilisation(data).axes:
+        names = [label.get_text() for label in axes.get_yticklabels()]
+        shown |= {
+            name: (bar.get_width(), text.get_text()) for name, bar, text in zip(names, axes.patches, axes.texts, strict=True)
+        }
+    assert set(shown) == set(rows.index)
+    for name, (width, text) in shown.items():
+        percent, window = rows.loc[name, ["utilisation_percent", "window_s"]]
+        assert width == pytest.approx(percent)
+        assert text == f"{percent:.0f} %, {window_words(window)}"
+
+
+def test_with_many_devices_the_worst_of_each_kind_are_shown(no_overlap):
+    figure = figures.utilisation(data_of(substations=14))
+    bars = sum(len(axes.patches) for axes in figure.axes)
+    assert bars <= figures.MOST_BARS
+    assert max(figure.get_size_inches()) <= 11.8
+    for axes in figure.axes:
+        assert "with the highest utilisation of" in axes.get_title(loc="left")
+        no_overlap(figure, axes.get_yticklabels())
+
+
+def test_colours_tell_the_margin():
+    assert [figures.margin_colour(value, 100.0) for value in (80.0, 80.1, 100.0, 100.1)] == [GREEN, ORANGE, ORANGE, VERMILION]
+    assert figures.margin_colour(75.0, 90.0) == ORANGE
+
+
+def test_sharing_adds_up_to_the_whole(data):
+    shares = figures.sharing(data).axes[0]
+    assert len(shares.patches) == 4
+    ends = {bar.get_y(): bar.get_x() + bar.get_width() for bar in shares.patches}
+    np.testing.assert_allclose(list(ends.values()), 100.0)
+
+
+def test_demand_beyond_the_contract_stands_out(data):
+    figure = figures.demand(data)
+    rows = data.table("demand")
+    drawn = sum(len(axes.patches) for axes in figure.axes)
+    red = sum(
+        bar.get_facecolor()[:3] == pytest.approx((0.835, 0.369, 0.0), abs=0.01) for axes in figure.axes for bar in axes.patches
+    )
+    assert (drawn, red) == (len(rows), (rows["met"] == "no").sum())
+
+
+def test_load_duration_shows_the_highest(data):
+    figure = figures.device_load_duration(data)
+    rows = data.table("load_duration")
+    for axes, kinds in zip(figure.axes, (["substation"], ["feeder"], ["contact_line"]), strict=True):
+        own = rows[rows["kind"].isin(kinds)]
+        assert len(axes.lines) == min(figures.MOST_CURVES, own["device"].nunique())
+        assert max(line.get_ydata().max() for line in axes.lines) == pytest.approx(own["current_a"].max())
+
+
+def test_zones_by_the_hour_stand_in_their_cells():
+    results, scenario = make_case(substations=5, hours=3.0)
+    data = RunData(sized(results, scenario), scenario)
+    figure = useful_voltage_zones(data)
+    rows = data.table("useful_voltage")
+    rows = rows[(rows["kind"] == "zone")]
+    for axes, name in zip(figure.axes, ("current_weighted_v", "time_mean_v"), strict=False):
+        assert sorted(text.get_text() for text in axes.texts) == sorted(f"{value:.0f}" for value in rows[name].dropna())
+    marked = sum(text.get_bbox_patch() is not None for text in figure.axes[0].texts)
+    assert marked == (rows["current_weighted_v"] < 2700.0).sum()
+
+
+def test_classes_of_colours_are_round_and_hold_all():
+    bounds = colour_classes(np.array([2487.0, 3011.0, np.nan]))
+    assert bounds[0] <= 2487.0
+    assert bounds[-1] >= 3011.0
+    assert len(bounds) <= 13
+    assert len(colour_classes(np.array([3000.0]))) >= 3
+
+
+def test_texts_can_be_read_on_their_colour():
+    assert (text_colour((1.0, 1.0, 1.0)), text_colour((0.0, 0.1, 0.3))) == ("black", "white")
+
+
+def test_without_tables_there_are_no_figures(data):
+    empty = RunData(Results({}, [], {}), data.scenario)
+    drawn = (figures.utilisation, figures.device_load_duration, figures.sharing, figures.demand, useful_voltage_zones)
+    assert [draw(empty) for draw in drawn] == [None] * 5
