@@ -64,7 +64,8 @@ def contingency(
     folder = out if out is not None else Path("reports") / f"{name}-contingency"
     outages = _prepare(loaded, scenario, name, pairs=pairs, grids=grids or None)
     base = sum(case.base for case in outages.cases)
-    tell(f"{scenario.name or name}: {loaded.origin}; {len(outages.cases) - base} outages, {base} base")
+    counts = f"{len(outages.cases) - base} outages, {base} base case{'s' if base > 1 else ''}"
+    tell(f"{scenario.name or name}: {loaded.origin}; {counts}")
     warn_of_compilation("advance")
     outcome, writer = _execute(outages, folder, force=force, workers=workers, scheduler=scheduler)
     show(outcome.run)
