@@ -12,8 +12,9 @@ from tractionpower.io.conductor_files import CONDUCTORS
 from tractionpower.io.documents import read_document
 from tractionpower.io.rating_files import DUTY_CLASSES, RECTIFIER_UNITS
 from tractionpower.io.text_files import Source
+from tractionpower.model.loads import Load
 from tractionpower.model.scenario import Scenario
-from tractionpower.model.supply import Load, Supply
+from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Timetable
 from tractionpower.supply.conductor_checks import check_conductors
 from tractionpower.supply.rating_checks import check_ratings

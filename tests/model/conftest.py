@@ -4,8 +4,9 @@ import pytest
 
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line, Station, Track
+from tractionpower.model.loads import Load
 from tractionpower.model.scenario import Clock, Scenario
-from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, Substation, Supply
+from tractionpower.model.supply import ContactLine, ReturnCircuit, SectionCabin, Substation, Supply
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import pytest
 
 from tractionpower.model.drive import StartingResistors
 from tractionpower.model.line import Gradient, Station
-from tractionpower.model.supply import Load
+from tractionpower.model.loads import Load
 from tractionpower.model.vehicle import Resistance, Vehicle
 
 

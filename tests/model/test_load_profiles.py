@@ -3,7 +3,7 @@
 import pytest
 from pydantic import ValidationError
 
-from tractionpower.model.supply import Load
+from tractionpower.model.loads import Load
 
 
 def load(*rows, **more):

@@ -5,7 +5,7 @@ import pytest
 from small_supplies import LIMITS
 
 from tractionpower.model.limits import system_voltages
-from tractionpower.model.supply import Load
+from tractionpower.model.loads import Load
 from tractionpower.supply.characteristics import load_segments, load_steps
 
 VOLTAGES = system_voltages(LIMITS, "dc3000")

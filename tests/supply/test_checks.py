@@ -5,7 +5,8 @@ import pytest
 from tractionpower.alignment.checks import check_line
 from tractionpower.model.limits import VOLTAGE_NAMES, Limit
 from tractionpower.model.line import ChainageBreak, Line, Station, Track
-from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, SectionPoint, Substation, Supply
+from tractionpower.model.loads import Load
+from tractionpower.model.supply import ContactLine, ReturnCircuit, SectionCabin, SectionPoint, Substation, Supply
 from tractionpower.supply.checks import check_supply
 
 BOTH = ("1", "2")

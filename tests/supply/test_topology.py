@@ -6,7 +6,8 @@ from solved import seed_network
 
 from tractionpower.model.earthing import Bonds
 from tractionpower.model.line import ChainageBreak
-from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, SectionPoint
+from tractionpower.model.loads import Load
+from tractionpower.model.supply import ContactLine, ReturnCircuit, SectionCabin, SectionPoint
 from tractionpower.supply.topology import SHORT_OHM
 from tractionpower.supply.wiring import build_topology
 

@@ -9,7 +9,8 @@ import numpy as np
 from scipy.linalg import expm
 
 from tractionpower.model.line import Line, Track
-from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, Substation, Supply
+from tractionpower.model.loads import Load
+from tractionpower.model.supply import ContactLine, ReturnCircuit, Substation, Supply
 
 RAIL_OHM = 0.0055
 CONTACT_OHM = 0.05

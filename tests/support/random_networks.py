@@ -7,7 +7,8 @@ from random_switchgear import RandomSwitchgear
 
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.model.line import Line
-from tractionpower.model.supply import Load, SectionCabin, SectionPoint, Substation, Supply
+from tractionpower.model.loads import Load
+from tractionpower.model.supply import SectionCabin, SectionPoint, Substation, Supply
 
 U_N = {"dc3000": 3000.0, "dc1500": 1500.0}
 LIMITS = shipped_limits()

@@ -10,7 +10,8 @@ from tractionpower.kernels.rail_potential import rail_potential
 from tractionpower.kernels.spans import place_ports
 from tractionpower.kernels.tables import new_work
 from tractionpower.model.line import Line, Track
-from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, SectionCabin, Substation, Supply
+from tractionpower.model.loads import Load
+from tractionpower.model.supply import ContactLine, ReturnCircuit, SectionCabin, Substation, Supply
 from tractionpower.supply.compile import compile_network
 
 LIMITS = shipped_limits()

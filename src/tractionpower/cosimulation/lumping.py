@@ -21,8 +21,9 @@ from tractionpower.kernels.tables import new_work
 from tractionpower.model.base import format_time
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.line import Line, Track
+from tractionpower.model.loads import Load
 from tractionpower.model.scenario import Scenario
-from tractionpower.model.supply import ContactLine, Load, ReturnCircuit, Supply
+from tractionpower.model.supply import ContactLine, ReturnCircuit, Supply
 from tractionpower.supply.bundles import return_tracks
 from tractionpower.supply.compile import SupplyTables, compile_network
 from tractionpower.supply.conductors import contact_line_resistance, return_resistance

@@ -21,9 +21,10 @@ from tractionpower.kernels.block_tables import Buffers, State, rewired_state
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import Supply
 from tractionpower.model.switchgear import Protection
-from tractionpower.supply.compile import Stretch, SupplyTables
+from tractionpower.supply.compile import SupplyTables
 from tractionpower.supply.protection import Trigger, protections
 from tractionpower.supply.states import Change, change_of, find_list, normal_value, with_states
+from tractionpower.supply.stretches import Stretch
 
 NOT_YET = 2**62
 

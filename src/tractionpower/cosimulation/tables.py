@@ -16,7 +16,8 @@ from tractionpower.model.supply import Supply
 from tractionpower.movement.compile import Movement
 from tractionpower.movement.driving.driven import compile_driven
 from tractionpower.supply.characteristics import load_steps, no_load_voltage
-from tractionpower.supply.compile import Stretch, SupplyTables, compile_network
+from tractionpower.supply.compile import SupplyTables, compile_network
+from tractionpower.supply.stretches import Stretch
 
 ROUNDING_S = 5e-7
 """A step starts at a time of day when it starts this much before it: start + k step is rounded, times have microseconds [s]."""

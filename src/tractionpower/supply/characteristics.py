@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S
 from tractionpower.model.limits import SystemVoltages
-from tractionpower.model.supply import Load, Substation
+from tractionpower.model.loads import Load
+from tractionpower.model.supply import Substation
 
 Segments = list[tuple[float, float, float, float]]
 """Rows (from_v, a, b, c) with rising `from_v`; the first holds downwards without end."""

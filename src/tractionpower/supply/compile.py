@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,8 @@ from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S, EDGE, PORT, SEGM
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import Limit, SystemVoltages, system_voltages
 from tractionpower.model.line import Line
-from tractionpower.model.supply import Load, Substation, Supply
+from tractionpower.model.loads import Load
+from tractionpower.model.supply import Substation, Supply
 from tractionpower.supply.characteristics import (
     NO_FLOOR_V,
     Segments,
@@ -28,6 +29,7 @@ from tractionpower.supply.probes import find_probes
 from tractionpower.supply.protection import Trigger, find_triggers, trigger_table
 from tractionpower.supply.rail_places import RailPlace, find_rail_places, rail_table
 from tractionpower.supply.span_tables import span_tables
+from tractionpower.supply.stretches import Stretch, find_stretches
 from tractionpower.supply.topology import Link, Topology
 from tractionpower.supply.wiring import build_topology
 
@@ -36,38 +38,6 @@ _DEAD = (-1, -1, -1)
 
 CEILING_FACTOR = 5.0
 """Multiple of the no-load voltage above which feeding back without limits counts as not served."""
-
-
-@dataclass(frozen=True, slots=True)
-class Stretch:
-    """A stretch of a track within one span, with its contact line and rails.
-
-    Attributes
-    ----------
-    track
-        Identifier of the track.
-    from_m, to_m, ends_km
-        Ends by the distance from the start of the track [m] and by kilometre.
-    span, positive, negative
-        Numbers of the span and of the conductors.
-    length_m
-        Length of the span [m].
-    no_load_v
-        Highest no-load voltage that sources put on the contact line; 0 without one [V].
-    earthed
-        Whether the rails have a potential against earth.
-    """
-
-    track: str
-    from_m: float
-    to_m: float
-    ends_km: tuple[float, float]
-    span: int
-    positive: int
-    negative: int
-    length_m: float
-    no_load_v: float
-    earthed: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +185,7 @@ class _Compiler:
             earth_edge=self._earth_edges(),
             watched=watched,
             triggers=trigger_table(topology, self.rail_places, watched),
-            stretches=tuple(self._stretches()),
+            stretches=tuple(find_stretches(topology, self.first_conductor, self._no_load_v, self._is_earthed)),
             train_port=np.arange(len(ports) - len(train_segments), len(ports), dtype=np.int64),
             voltages=self.voltages,
         )
@@ -269,27 +239,6 @@ class _Compiler:
             fed = self._no_load_v(span.conductors[span.contact(track)].left) > 0.0
             rows.append((-1, -1, first + k) if fed else _DEAD)
         return np.array(rows, SECTION)
-
-    def _stretches(self) -> Iterator[Stretch]:
-        ends = self._span_ends()
-        for number, span in enumerate(self.topology.spans):
-            first = self.first_conductor[number]
-            rail = first + len(span.tracks)
-            for contact, track in enumerate(span.tracks):
-                from_m, to_m = next(ends[track])
-                if from_m < to_m:
-                    volts = self._no_load_v(span.conductors[contact].left)
-                    earthed = self._is_earthed(span.rail.left)
-                    kms, number_of = (span.from_km, span.to_km), first + contact
-                    yield Stretch(track, from_m, to_m, kms, number, number_of, rail, span.length_m, volts, earthed)
-
-    def _span_ends(self) -> dict[str, Iterator[list[float]]]:
-        """Return the two ends of every span of each track, in the order of the spans [m]."""
-        kms: dict[str, list[tuple[float, float]]] = {}
-        for span in self.topology.spans:
-            for track in span.tracks:
-                kms.setdefault(track, []).append((span.from_km, span.to_km))
-        return {track: iter(self.topology.metres(track, np.array(pairs)).tolist()) for track, pairs in kms.items()}
 
     # -- ports ---------------------------------------------------------------------------------------------------
 

@@ -13,7 +13,8 @@ from tractionpower.errors import Problem, Severity
 from tractionpower.io.wording import did_you_mean
 from tractionpower.kernels.tables import SHARED_NODE_M
 from tractionpower.model.earthing import Earthing, VoltageLimitingDevice
-from tractionpower.model.supply import Load, SectionCabin, SectionPoint, Substation, Supply
+from tractionpower.model.loads import Load
+from tractionpower.model.supply import SectionCabin, SectionPoint, Substation, Supply
 from tractionpower.supply.site import Place, Site
 
 Device: TypeAlias = Substation | SectionCabin | SectionPoint | Load

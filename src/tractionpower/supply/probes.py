@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Sequence
 
-from tractionpower.model.supply import Load
+from tractionpower.model.loads import Load
 from tractionpower.supply.bundles import SHARED_KM
 from tractionpower.supply.topology import Topology
 

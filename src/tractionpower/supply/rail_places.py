@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tractionpower.kernels.rail_potential import RAIL, shares
 from tractionpower.kernels.tables import SHARED_NODE_M
-from tractionpower.model.supply import Load
+from tractionpower.model.loads import Load
 from tractionpower.supply.numbering import Numbering
 from tractionpower.supply.topology import Topology
 

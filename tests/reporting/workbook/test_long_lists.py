@@ -1,6 +1,6 @@
 """A list within a row is told in a cell, a long one by its ends."""
 
-from tractionpower.model.supply import Load
+from tractionpower.model.loads import Load
 from tractionpower.reporting.workbook.inputs import MOST_ROWS, in_words
 
 

@@ -10,7 +10,7 @@ from random_coupling import RandomCoupling
 
 from tractionpower.cosimulation.places import Places
 from tractionpower.cosimulation.quiet import QuietRun
-from tractionpower.model.supply import Load
+from tractionpower.model.loads import Load
 from tractionpower.model.timetable import Timetable
 from tractionpower.supply.devices import DeviceCurrents
 
