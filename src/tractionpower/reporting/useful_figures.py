@@ -16,7 +16,7 @@ from tractionpower.reporting.style import GREY, STYLE, VERMILION, new_figure
 
 DEFINITIONS = {
     "current_weighted_v": "Weighted by the currents of the trains",
-    "time_mean_v": "Mean over time of the means of the trains",
+    "time_mean_v": "Mean over time of all trains in the zone",
 }
 """The two definitions by column, and how they are told."""
 
