@@ -29,6 +29,7 @@ from tractionpower.kernels.train_tables import LIMITED_BY, PHASES
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import Limit, common_limits
 from tractionpower.model.line import Line
+from tractionpower.model.measured import MeasuredMap
 from tractionpower.model.quantity import unit_of
 from tractionpower.model.ratings import DutyRow, RectifierUnit
 from tractionpower.model.scenario import StudyFile
@@ -52,6 +53,7 @@ FILES = {
     "conductors (CSV)": Conductor,
     "duty_classes (CSV)": DutyRow,
     "rectifier_units (CSV)": RectifierUnit,
+    "map of a measurement (YAML)": MeasuredMap,
 }
 INPUTS = """Units stand in the names. A list may be the name of a CSV file instead, relative to the file that names it; its
 header row names the keys, those of a nested mapping with dots (`start.time`). A column that is a list of rows itself, such as

@@ -22,6 +22,7 @@ COMMANDS = [
     ["feasibility"],
     ["contingency"],
     ["size"],
+    ["compare"],
     ["report"],
     ["export"],
     ["import"],

@@ -15,6 +15,7 @@ import typer
 
 from tractionpower.cli import (
     check,
+    compare,
     contingency,
     curves,
     export,
@@ -45,6 +46,7 @@ app.command("curves")(curves.curves)
 app.command("feasibility")(feasibility.feasibility)
 app.command("contingency")(contingency.contingency)
 app.command("size")(size.size)
+app.command("compare")(compare.compare)
 app.command("report")(report.report)
 app.command("export")(export.export)
 app.command("import")(import_.import_)

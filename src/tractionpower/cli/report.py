@@ -20,11 +20,15 @@ def report(
     """Write the reports of an earlier run again."""
     from tractionpower.cli.messages import tell
     from tractionpower.errors import UsageError
+    from tractionpower.reporting.measured import write_measured_reports
     from tractionpower.reporting.reports import write_reports
     from tractionpower.results.results import Results
     from tractionpower.results.store import PARTIAL
 
     results = Results.open(folder, partial=partial)
+    if results.run.get("kind") == "measured":
+        tell_reports(write_measured_reports(results, folder))
+        return
     if "journeys" in results.run:
         raise UsageError(f"{folder} holds theoretical journeys, not a run; `tractionpower journey` draws them")
     scenario = results.scenario

@@ -11,6 +11,7 @@ from tractionpower.io.wording import did_you_mean, shown
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
+from tractionpower.model.measured import MeasuredMap
 from tractionpower.model.ratings import DutyRow, RectifierUnit
 from tractionpower.model.scenario import StudyFile
 from tractionpower.model.supply import Supply
@@ -28,6 +29,7 @@ _MODELS: dict[str, type[BaseModel]] = {
     "conductors": Conductor,
     "duty_classes": DutyRow,
     "rectifier_units": RectifierUnit,
+    "measured": MeasuredMap,
 }
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"

@@ -55,13 +55,14 @@ def relative_label(file: Path, folder: Path) -> str:
         return printable(str(file))
 
 
-def read_text(source: Source, limit_mb: int) -> str:
-    """Return the text of a UTF-8 file (a byte order mark is dropped).
+def read_text(source: Source, limit_mb: int, encoding: str = "utf-8") -> str:
+    """Return the text of a file in UTF-8, or in another `encoding` (a byte order mark is dropped).
 
     Raises
     ------
     InputError
-        If the file is missing, a folder, not a plain file, larger than `limit_mb` megabytes, not readable or not UTF-8.
+        If the file is missing, a folder, not a plain file, larger than `limit_mb` megabytes, not readable or of another
+        encoding.
     """
     try:
         _refuse_by_status(source, limit_mb)
@@ -78,7 +79,7 @@ def read_text(source: Source, limit_mb: int) -> str:
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         reason = getattr(error, "strerror", None) or str(error)
         raise source.fail("unreadable_file", f"the file cannot be read: {printable(reason)}") from None
-    return _decode(source, raw)
+    return _decode(source, raw, encoding)
 
 
 def _refuse_by_status(source: Source, limit_mb: int) -> None:
@@ -93,11 +94,14 @@ def _refuse_by_status(source: Source, limit_mb: int) -> None:
         raise source.fail("file_too_large", f"the file has {size:.1f} MB", f"at most {limit_mb} MB", remedy)
 
 
-def _decode(source: Source, raw: bytes) -> str:
+def _decode(source: Source, raw: bytes, encoding: str) -> str:
     try:
-        return raw.decode("utf-8-sig")
+        return raw.decode("utf-8-sig" if encoding == "utf-8" else encoding)
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
+        if encoding != "utf-8":
+            found = f"the byte 0x{raw[error.start]:02x} is not {encoding}"
+            raise source.fail("not_decoded", found, encoding, line=line) from None
         found = f"the byte 0x{raw[error.start]:02x} is not UTF-8"
         raise source.fail("not_utf8", found, "UTF-8", "save the file as UTF-8 text", line) from None
 

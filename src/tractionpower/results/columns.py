@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tractionpower.results.column import Column
 from tractionpower.results.column import column as _column
+from tractionpower.results.measured_columns import MEASURED_TABLES
 from tractionpower.results.sizing_columns import SIZING_TABLES
 
 TIME = _column("time_s", "Start of the step, seconds after midnight of the study's day.", "f8")
@@ -199,4 +200,5 @@ TABLES: dict[str, tuple[Column, ...]] = {
         _column("message", "The event in words.", "text"),
     ),
     **SIZING_TABLES,
+    **MEASURED_TABLES,
 }

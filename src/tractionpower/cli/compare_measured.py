@@ -1,0 +1,108 @@
+"""``tractionpower compare DIR --measured FILE --map MAP.yaml``: a run beside a measurement."""
+
+# ruff: noqa: PLC0415 - heavy modules are imported inside the functions that need them
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from tractionpower.studies.measured.study import Comparison
+
+
+def compare_measured(
+    folder: Path, measured: Path, map_file: Path, out: Path | None = None, *, force: bool, no_reports: bool, as_json: bool
+) -> None:
+    """Hold a measured file against the run in `folder`, write tables and reports, and say how far they are apart.
+
+    Parameters
+    ----------
+    folder
+        What `tractionpower run` has written.
+    measured, map_file
+        The measurement, and what its columns are.
+    out
+        Folder of the comparison; None: ``reports/<study>-measured`` here.
+    force, no_reports, as_json
+        Replace what is there; write tables only; print the errors as JSON.
+    """
+    from tractionpower.cli.messages import DONE, NOT_COMPLETED, tell, tell_problems
+    from tractionpower.cli.report import tell_reports
+    from tractionpower.errors import UsageError
+    from tractionpower.reporting.measured import write_measured_reports
+    from tractionpower.results.results import Results
+    from tractionpower.results.store import RunWriter
+    from tractionpower.studies.measured.study import compare_measured as compared
+
+    results = Results.open(folder)
+    target = out if out is not None else Path("reports") / f"{results.run.get('study') or folder.name}-measured"
+    if target.resolve() == folder.resolve():
+        raise UsageError(f"{target} holds the run itself; choose another --out")
+    comparison = compared(results, measured, map_file)
+    writer = RunWriter(target, comparison.run["study"], comparison.run["input_hash"], force=force, scenario=results.scenario)
+    for name, table in comparison.tables().items():
+        writer.append(name, table)
+    run = writer.finish(comparison.run, [])
+    tell_problems(comparison.problems)
+    if as_json:
+        typer.echo(json.dumps(_document(comparison, target), indent=1, ensure_ascii=False, allow_nan=False))
+    else:
+        _show(comparison)
+    reports = [] if no_reports else write_measured_reports(Results.open(target), target)
+    tell(f"results: {target}")
+    tell_reports(reports)
+    done = any(each.errors["rows"] for each in comparison.series) and run["status"] == "complete"
+    raise typer.Exit(DONE if done else NOT_COMPLETED)
+
+
+def _document(comparison: Comparison, folder: Path) -> dict[str, Any]:
+    note = {key: value for key, value in comparison.run["measured"].items() if key != "map"}
+    series = [
+        {"series": each.id, "unit": _unit(each.measured.series.quantity)}
+        | {name: None if not math.isfinite(value) else float(value) for name, value in each.errors.items()}
+        for each in comparison.series
+    ]
+    return {"format": 1, "folder": str(folder), **note, "series": series}
+
+
+def _unit(quantity: str) -> str:
+    from tractionpower.model.quantity import unit_of
+
+    return unit_of(quantity)
+
+
+def _show(comparison: Comparison) -> None:
+    from tractionpower.cli.console import new_console, new_table
+
+    console, told = new_console(), comparison.run["measured"]
+    if told["align"] == "time":
+        console.print(_shift_in_words(told))
+    numbers = ["rows", "measured", "computed", "mean error", "RMS error", "% of RMS", "correlation"]
+    numbers += ["lowest", "highest", "energy %"]
+    table = new_table(["series", "unit"], numbers)
+    for each in comparison.series:
+        e = each.errors
+        extremes = [f"{e[f'{end}_measured']:.5g}/{e[f'{end}_computed']:.5g}" for end in ("lowest", "highest")]
+        values = [f"{e['mean_measured']:.5g}", f"{e['mean_computed']:.5g}", f"{e['mean_error']:+.4g}", f"{e['rms_error']:.4g}"]
+        values += [f"{e['relative_percent']:.2f}", f"{e['correlation']:.4f}", *extremes, f"{e['energy_error_percent']:+.2f}"]
+        cells = [f"{e['rows']:.0f}", *(("" if "nan" in value else value) for value in values)]
+        table.add_row(each.id, _unit(each.measured.series.quantity), *cells)
+    console.print(table)
+    console.print("measured and computed are means; lowest and highest are measured/computed; errors are computed less measured")
+
+
+def _shift_in_words(told: dict[str, Any]) -> str:
+    words = f"shift: {told['shift_s']:+.2f} s is added to the times of the measurement"
+    if not told["shift_found"]:
+        return f"{words}, as the map says"
+    if told["correlation"] is None:
+        return words
+    words += f", found with correlation {told['correlation']:.3f}, uncertain within some {told['width_s']:.1f} s"
+    if told["rival_s"] is not None:
+        words += f"; next best {told['rival_s']:+.1f} s with {told['rival_correlation']:.3f}"
+    return words

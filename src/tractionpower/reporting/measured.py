@@ -1,0 +1,38 @@
+"""The reports of a comparison with a measurement, from its tables alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tractionpower.errors import OutputError
+from tractionpower.results.disk import reason_of
+from tractionpower.results.results import Results
+
+FIGURES = "figures"
+WORKBOOK = "compare.xlsx"
+
+
+def write_measured_reports(results: Results, folder: Path) -> list[Path]:
+    """Write figures and workbook of a comparison with a measurement into `folder` and return their paths.
+
+    Raises
+    ------
+    OutputError
+        If a report cannot be written; the other one is written all the same.
+    """
+    from tractionpower.reporting.measured_figures import write_measured_figures  # noqa: PLC0415 - matplotlib is slow to import
+    from tractionpower.reporting.workbook.measured import write_measured_workbook  # noqa: PLC0415
+
+    paths: list[Path] = []
+    hindrances = []
+    try:
+        paths += write_measured_figures(results, folder / FIGURES)
+    except OSError as error:
+        hindrances.append(f"figures cannot be written into {folder / FIGURES}: {reason_of(error)}")
+    try:
+        paths.append(write_measured_workbook(results, folder / WORKBOOK))
+    except OSError as error:
+        hindrances.append(f"{folder / WORKBOOK} cannot be written: {reason_of(error)}")
+    if hindrances:
+        raise OutputError(f"the tables are complete, but {'; '.join(hindrances)}")
+    return paths

@@ -1,0 +1,1 @@
+"""A measurement held against a run: reading, shift of its clock, resampling, errors."""
