@@ -13,7 +13,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from tractionpower.studies.contingency.outages import outages
 
 import tractionpower as tp
 from report import goal, table
@@ -23,6 +22,7 @@ from tractionpower.model.change import apply_changes
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.windows import WINDOWS_S, SlidingWindows
 from tractionpower.studies.cases.measure import measure
+from tractionpower.studies.contingency.outages import outages
 from tractionpower.studies.runner.case import Case
 from tractionpower.studies.runner.run import run_cases
 from tractionpower.studies.runner.store import CaseStore

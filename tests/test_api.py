@@ -11,7 +11,7 @@ import tractionpower as tp
 README = Path(__file__).parents[1] / "README.md"
 NAMES = [
     "InputError", "OutputError", "Problem", "Results", "Scenario", "TractionPowerError", "UsageError",
-    "change", "check", "contingency", "feasibility", "journeys", "load", "save", "simulate", "size",
+    "change", "check", "compare", "contingency", "feasibility", "journeys", "load", "save", "simulate", "size", "sweep",
 ]  # fmt: skip
 
 

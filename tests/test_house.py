@@ -22,6 +22,7 @@ COMMANDS = [
     ["feasibility"],
     ["contingency"],
     ["size"],
+    ["sweep"],
     ["compare"],
     ["report"],
     ["export"],

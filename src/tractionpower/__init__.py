@@ -17,10 +17,12 @@ if TYPE_CHECKING:
     from tractionpower.io.scenario_files import save_scenario as save
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.results import Results
+    from tractionpower.studies.compare.study import compare
     from tractionpower.studies.contingency.study import contingency
     from tractionpower.studies.feasibility.study import feasibility
     from tractionpower.studies.journeys import journeys
     from tractionpower.studies.ratings.study import size
+    from tractionpower.studies.sweep.study import sweep
 
 _HOMES = {
     "InputError": ("errors", "InputError"),
@@ -32,6 +34,7 @@ _HOMES = {
     "UsageError": ("errors", "UsageError"),
     "change": ("io.library", "change"),
     "check": ("cosimulation.check", "check_scenario"),
+    "compare": ("studies.compare.study", "compare"),
     "contingency": ("studies.contingency.study", "contingency"),
     "feasibility": ("studies.feasibility.study", "feasibility"),
     "journeys": ("studies.journeys", "journeys"),
@@ -39,6 +42,7 @@ _HOMES = {
     "save": ("io.scenario_files", "save_scenario"),
     "simulate": ("cosimulation.simulate", "simulate"),
     "size": ("studies.ratings.study", "size"),
+    "sweep": ("studies.sweep.study", "sweep"),
 }
 
 __all__ = [
@@ -51,6 +55,7 @@ __all__ = [
     "UsageError",
     "change",
     "check",
+    "compare",
     "contingency",
     "feasibility",
     "journeys",
@@ -58,6 +63,7 @@ __all__ = [
     "save",
     "simulate",
     "size",
+    "sweep",
 ]
 
 

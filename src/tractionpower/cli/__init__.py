@@ -27,6 +27,7 @@ from tractionpower.cli import (
     run,
     schema,
     size,
+    sweep,
     validate,
 )
 from tractionpower.cli.messages import DONE, exit_code_of
@@ -46,6 +47,7 @@ app.command("curves")(curves.curves)
 app.command("feasibility")(feasibility.feasibility)
 app.command("contingency")(contingency.contingency)
 app.command("size")(size.size)
+app.command("sweep")(sweep.sweep)
 app.command("compare")(compare.compare)
 app.command("report")(report.report)
 app.command("export")(export.export)

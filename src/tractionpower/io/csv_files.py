@@ -63,6 +63,39 @@ def read_csv(source: Source, row: Shape) -> Table:
     return table
 
 
+def read_plain(source: Source) -> tuple[list[str], list[tuple[int, dict[str, str]]]]:
+    """Return header and rows of a CSV file with columns of any name: each row with its line, its cells by column as texts.
+
+    Empty cells are left out; a decimal comma becomes a point where a semicolon separates cells.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, has no header, a column twice or without a name, or rows of another length.
+    """
+    text = read_text(source, LIMIT_MB)
+    separator = ";" if ";" in text.partition("\n")[0] else ","
+    lines = _cells(source, text, separator)
+    line, header = next(lines, (0, []))
+    if not header:
+        raise source.fail("empty_file", "the file is empty", "a header row and a row for each case")
+    problems = [
+        source.problem("duplicate_column", f"the column {shown(name)} twice", "each column once", line=line)
+        for name in sorted({name for name in header if header.count(name) > 1})
+    ]
+    rows = []
+    for line, cells in lines:
+        if len(cells) != len(header):
+            found = f"{len(cells)} cells in the row"
+            remedy = "" if separator == ";" else "a cell with a comma stands in quotes"
+            problems.append(source.problem("ragged_row", found, f"{len(header)}, as in the header", remedy, line))
+        named = zip(header, cells, strict=False)
+        rows.append((line, {name: _pointed(cell, separator) for name, cell in named if cell}))
+    if problems:
+        raise InputError(problems)
+    return header, rows
+
+
 def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     """Return rows as CSV text with commas, header first; None becomes an empty cell."""
     buffer = io.StringIO()
@@ -129,8 +162,14 @@ def _value(cell: str, kind: str, separator: str) -> Any:
     if kind == "integer" and re.fullmatch(r"[-+]?\d{1,300}", cell):
         return int(cell)
     if kind in ("number", "integer"):
-        text = cell.replace(",", ".") if separator == ";" else cell
+        text = _pointed(cell, separator)
         return float(text) if _NUMBER.fullmatch(text) else cell
     if kind == "boolean" and cell.lower() in ("true", "false"):
         return cell.lower() == "true"
     return cell
+
+
+def _pointed(cell: str, separator: str) -> str:
+    """Return a number with a decimal comma, where a semicolon separates cells, with a point; other texts as they are."""
+    text = cell.replace(",", ".") if separator == ";" else cell
+    return text if _NUMBER.fullmatch(text) else cell

@@ -1,7 +1,9 @@
-"""All reports of a run or of a study of outages, from its results alone: after the run, or later again."""
+"""All reports of a run or of a study of many runs, from its results alone: after the run, or later again."""
+# ruff: noqa: PLC0415 - matplotlib and openpyxl are slow to import
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from tractionpower.errors import OutputError
@@ -11,10 +13,14 @@ from tractionpower.results.results import Results
 
 FIGURES = "figures"
 WORKBOOK = "report.xlsx"
+WORKBOOKS = {"compare": "compare.xlsx"}
+"""Other names of the workbook, by what ``run.json`` says that results are."""
+
+FigureWriter = Callable[[Results, Scenario, Path], list[Path]]
 
 
 def write_reports(results: Results, scenario: Scenario, folder: Path) -> list[Path]:
-    """Write figures and workbook of a run, or of a study of outages, into `folder` and return their paths.
+    """Write figures and workbook of a run, or of a study of many, into `folder` and return their paths.
 
     One report that cannot be written does not hinder the others; tables are not touched.
 
@@ -23,21 +29,31 @@ def write_reports(results: Results, scenario: Scenario, folder: Path) -> list[Pa
     OutputError
         If a report cannot be written; all that hinders is told.
     """
-    from tractionpower.reporting.figures import write_figures, write_outage_figures  # noqa: PLC0415 - matplotlib and openpyxl are slow to import
-    from tractionpower.reporting.workbook import write_workbook  # noqa: PLC0415
+    from tractionpower.reporting.workbook import write_workbook
 
+    kind = str(results.run.get("kind") or "")
+    workbook = folder / WORKBOOKS.get(kind, WORKBOOK)
     paths: list[Path] = []
     hindrances = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        write = write_outage_figures if results.run.get("kind") == "contingency" else write_figures
-        paths += write(results, scenario, folder / FIGURES)
+        paths += _figure_writer(kind)(results, scenario, folder / FIGURES)
     except OSError as error:
         hindrances.append(f"figures cannot be written into {folder / FIGURES}: {reason_of(error)}")
     try:
-        paths.append(write_workbook(results, scenario, folder / WORKBOOK))
+        paths.append(write_workbook(results, scenario, workbook))
     except OSError as error:
-        hindrances.append(f"{folder / WORKBOOK} cannot be written: {reason_of(error)}")
+        hindrances.append(f"{workbook} cannot be written: {reason_of(error)}")
     if hindrances:
         raise OutputError(f"the tables are complete, but {'; '.join(hindrances)}")
     return paths
+
+
+def _figure_writer(kind: str) -> FigureWriter:
+    """Return what writes the figures of results of a kind."""
+    from tractionpower.reporting.compare_figures import write_compare_figures
+    from tractionpower.reporting.figures import write_figures, write_outage_figures
+    from tractionpower.reporting.sweep_figures import write_sweep_figures
+
+    writers = {"contingency": write_outage_figures, "sweep": write_sweep_figures, "compare": write_compare_figures}
+    return writers.get(kind, write_figures)

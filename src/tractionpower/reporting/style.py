@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +50,15 @@ def png_names(identifiers: Iterable[str]) -> dict[str, str]:
     {'EC 1/2': 'EC 1%2F2.png'}
     """
     return {identifier: name.removesuffix(ENDING) + ".png" for identifier, name in file_names(identifiers).items()}
+
+
+def save_all(drawn: Mapping[str, Figure], folder: Path, names: Iterable[str]) -> list[Path]:
+    """Write figures as PNG by their names and return their paths; of `names`, those that are not drawn this time go."""
+    paths = [save(figure, folder / f"{name}.png") for name, figure in drawn.items()]
+    for name in {*names} - {*drawn}:
+        with suppress(OSError):
+            (folder / f"{name}.png").unlink()
+    return paths
 
 
 def save(figure: Figure, path: Path) -> Path:

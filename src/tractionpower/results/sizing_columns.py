@@ -5,6 +5,7 @@ from __future__ import annotations
 from tractionpower.results.column import Column, column
 
 _CASE = column("case", "Identifier of the case.", "text")
+_FOLDER = column("folder", "Name of the results folder.", "text")
 _DEVICE = column("device", "Identifier of the device.", "text")
 _KIND = column(
     "kind", "unit, substation, feeder, return_feeder, cabin_feeder, switch, contact_line, rails or supply_point.", "text"
@@ -196,5 +197,46 @@ SIZING_TABLES: dict[str, tuple[Column, ...]] = {
         column("met", "Whether it holds in every case; empty without a rating.", "text"),
         _CASE,
     ),
+    "differences": (
+        _CASE,
+        column("figure", "Figure, a column of table cases.", "text"),
+        column("base", "Its value in the base case, in the unit of its name.", "f8"),
+        column("value", "Its value in this case.", "f8"),
+        column("difference", "value less base.", "f8"),
+        column("percent", "difference of base; empty where base is 0.", "f8"),
+    ),
+    "compare": (
+        column("figure", "Name of the figure, with its unit as suffix.", "text"),
+        column("place", "Which train, substation or other device; empty: the run.", "text"),
+        column("unit", "Unit of the values.", "text"),
+        _FOLDER,
+        column("value", "Value of the figure.", "f8"),
+        column("at", "Where along the line and when, for figures that have a place of their own in each folder.", "text"),
+        column("difference", "value less that of the base folder; empty where one of them is missing.", "f8"),
+        column("percent", "difference of the value of the base folder; empty where that is 0.", "f8"),
+    ),
+    "compare_verdicts": (
+        column("figure", "What is judged.", "text"),
+        column("limit", "Name of the limit.", "text"),
+        _FOLDER,
+        column("value", "Value of the figure, in the unit of its name.", "f8"),
+        column("limit_value", "Value of the limit in the run of this folder.", "f8"),
+        column("at", "Where and when.", "text"),
+        column("met", "Whether the limit is met; empty where it was not judged.", "text"),
+        column("status", "How the limit is known: verified, secondary, recalled, user.", "text"),
+    ),
+    "compare_profile": (
+        _FOLDER,
+        column("track", "Track.", "text"),
+        column("km", "Place along the line.", "f8"),
+        column("where", "pantograph or fixed; empty: either, in the worst of many cases.", "text"),
+        column("lowest_voltage_v", "Lowest voltage there."),
+    ),
+    "compare_inputs": (
+        _FOLDER,
+        column("path", "Path of an input that differs from that of the base folder.", "text"),
+        column("base", "Value in the base folder; empty: it is not there.", "text"),
+        column("value", "Value in this folder; empty: it is not there.", "text"),
+    ),
 }
-"""Tables of `size`, `contingency` and `sweep`."""
+"""Tables of `size`, `contingency`, `sweep` and `compare`."""

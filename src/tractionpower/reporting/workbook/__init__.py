@@ -10,7 +10,7 @@ from tractionpower.results.results import Results
 
 
 def write_workbook(results: Results, scenario: Scenario, path: Path) -> Path:
-    """Write the workbook of a run, or of a study of outages, and return where it is.
+    """Write the workbook of a run, or of a study of many, and return where it is.
 
     The file gets its name when it is complete. Where another program holds the earlier one open, the new one stands
     beside it, with ``.new`` before its suffix.
@@ -24,7 +24,8 @@ def write_workbook(results: Results, scenario: Scenario, path: Path) -> Path:
     path
         Name of the file, ``report.xlsx``.
     """
-    from tractionpower.reporting.workbook import book, outage_book
+    from tractionpower.reporting.workbook import book, compare, outage_book, sweep
 
-    build = outage_book.build if results.run.get("kind") == "contingency" else book.build
+    builders = {"contingency": outage_book.build, "sweep": sweep.build, "compare": compare.build}
+    build = builders.get(str(results.run.get("kind") or ""), book.build)
     return book.save_as(build(results, scenario), path)

@@ -1,0 +1,1 @@
+"""Comparison of results folders: key figures, verdicts and inputs side by side."""
