@@ -62,3 +62,15 @@ def test_another_base(capsys):
     assert main(["compare", "base", "weak", "--base", "weak", "--no-reports", "--out", "other"]) == 0
     assert "0.3 -> 0.12" in capsys.readouterr().out
     assert Results.open("other").run["compare"]["base"] == "weak"
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["base", "weak", "--measured", "m.csv", "--map", "map.yaml"], "2 folders"),
+        (["base", "weak", "--json"], "--json prints"),
+    ],
+)
+def test_options_that_do_not_go_together(options, words, capsys):
+    assert main(["compare", *options]) == 2
+    assert words in capsys.readouterr().err
