@@ -6,7 +6,7 @@ from tractionpower.cli import main
 from tractionpower.cli.messages import exit_code_of, has_errors, summary
 from tractionpower.errors import InputError, Problem
 
-SCHEMAS = ["study", "line", "supply", "timetable", "train", "vehicle", "limits", "conductors"]
+SCHEMAS = ["study", "line", "supply", "timetable", "train", "vehicle", "limits", "conductors", "duty_classes", "rectifier_units"]
 
 
 @pytest.fixture
