@@ -3,6 +3,7 @@ from remedy_cases import case_of, judged, small_study
 
 from tractionpower.model.change import apply_changes
 from tractionpower.studies.remedies.sensitivities import lost_seconds, sensitivities, small_changes
+from tractionpower.supply.characteristics import internal_resistance
 
 
 def station(name, km, **more):
@@ -47,6 +48,19 @@ def test_one_more_unit_lowers_the_resistance_that_units_share(study):
     changed = apply_changes(study, small.change).supply.substations[2]
     assert changed.internal_resistance_ohm == pytest.approx(0.02 + 0.2 / 3)  # units of 0.2 ohm each, three in parallel
     assert small.per == "3 units in place of 2"
+
+
+def test_plants_given_by_their_units_change_alike():
+    whole = station("D", 12.0, units=2, grid_resistance_ohm=0.02)
+    by_unit = {k: v for k, v in whole.items() if k != "internal_resistance_ohm"} | {"unit_resistance_ohm": 0.2}
+    found = []
+    for plant in (whole, by_unit):
+        study = small_study(substations=[STATIONS[1], plant], remedies={"sensitivities": 20})
+        small = {each.kind: each for each in small_changes(case_of(study), BASE) if each.subject == "D"}
+        changed = [apply_changes(study, small[kind].change).supply.substations[1] for kind in ("units", "internal_resistance")]
+        found.append([internal_resistance(each) for each in changed])
+    assert found[0] == pytest.approx([0.02 + 0.2 / 3, 0.99 * 0.12], rel=1e-6)
+    assert found[1] == pytest.approx(found[0], rel=1e-6)
 
 
 def test_a_short_list_has_something_of_every_device(study):
