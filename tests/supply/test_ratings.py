@@ -130,7 +130,7 @@ def test_a_contact_line_bears_what_its_wires_do_unless_its_row_says_more():
     assert found.status == "derived"
     assert found.rated_a == pytest.approx(1150.4, abs=0.1)
     assert "L120 at its highest temperature; air 40 °C, wind 0.6 m/s" in found.source
-    assert found.windows == ((300.0, 1.0),)
+    assert found.windows == ((480.0, 1.0),)
     west = Device("contact_line", "track 1 km 0-10", "", "1", 0.0, 10.0)
     assert (rating(west, contact_lines=rows).rated_a, rating(west, contact_lines=rows).status) == (1700.0, "user")
 
