@@ -37,6 +37,14 @@ def test_outages_that_violate_a_limit(capsys):
     assert Results.open("out").run["cases"]["reused"] == 0  # it was complete, so all is computed again
 
 
+def test_whole_results_of_each_case_are_written_where_they_are_asked_for():
+    options = ["--only", "substation", "--device", "A", "--grid", "normal", "--full-tables"]
+    assert main(["contingency", "small", *OPTIONS, *options]) == 0
+    folders = [Results.open(path.parent) for path in sorted(Path("out-cases").glob("*/run.json"))]
+    lowest = sorted(float(each.table("profile")["lowest_voltage_v"].min()) for each in folders)
+    assert lowest == pytest.approx(sorted(Results.open("out").table("cases")["lowest_voltage_v"]), abs=1e-3)
+
+
 def test_cases_that_cannot_be_served_are_told(capsys):
     options = ["--only", "substation", "--grid", "normal", "--set", "supply.loads[train].power_kw=9000"]
     assert main(["contingency", "small", *OPTIONS, *options]) == 3

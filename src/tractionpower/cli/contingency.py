@@ -44,6 +44,9 @@ def contingency(
     scheduler: Annotated[
         str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Dask scheduler whose workers run the cases.")
     ] = None,
+    full_tables: Annotated[
+        bool, typer.Option("--full-tables", help="Also write the whole results of each case, into DIR-cases/<case>/.")
+    ] = False,
     no_reports: Annotated[bool, typer.Option("--no-reports", help="Write the tables only, no figures and no workbook.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace what is there, even results of another study.")] = False,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with 4 when a limit is violated in a case.")] = False,
@@ -56,6 +59,7 @@ def contingency(
     from tractionpower.cli.report import tell_reports
     from tractionpower.cli.run import write_run_reports
     from tractionpower.io.scenario_files import load_scenario
+    from tractionpower.results.store import RunWriter
 
     loaded = load_scenario(study)
     grids = [word.strip() for word in grid.split(",")] if grid is not None else []
@@ -67,7 +71,9 @@ def contingency(
     counts = f"{len(outages.cases) - base} outages, {base} base case{'s' if base > 1 else ''}"
     tell(f"{scenario.name or name}: {loaded.origin}; {counts}")
     warn_of_compilation("advance")
-    outcome, writer = _execute(outages, folder, force=force, workers=workers, scheduler=scheduler)
+    writer = RunWriter(folder, name, scenario.input_hash, force=force, scenario=scenario)
+    how = {"scheduler": scheduler, "full_tables": Path(f"{folder}-cases") if full_tables else None}
+    outcome = _execute(outages, writer, workers=workers, **how)
     show(outcome.run)
     if not no_reports:
         tell("writing figures and workbook")
@@ -117,25 +123,21 @@ def _prepare(loaded: LoadedScenario, scenario: Scenario, name: str, *, pairs: bo
     return outages
 
 
-def _execute(
-    outages: OutageStudy, folder: Path, *, force: bool, workers: int | None, scheduler: str | None
-) -> tuple[OutageOutcome, RunWriter]:
+def _execute(outages: OutageStudy, writer: RunWriter, *, workers: int | None, **how: Any) -> OutageOutcome:
     import os
 
     from tractionpower.cli.cases_bar import cases_bar
     from tractionpower.cli.messages import tell
-    from tractionpower.results.store import RunWriter
     from tractionpower.studies.contingency.study import run_into
 
-    writer = RunWriter(folder, outages.study, outages.scenario.input_hash, force=force, scenario=outages.scenario)
     with cases_bar(len(outages.cases)) as progress:
-        outcome = run_into(outages, writer, workers=workers or os.cpu_count() or 1, scheduler=scheduler, progress=progress)
+        outcome = run_into(outages, writer, workers=workers or os.cpu_count() or 1, progress=progress, **how)
     if outcome.interrupted:
         tell(f"interrupted after {len(outcome.cases.rows)} of {len(outages.cases)} cases; the same command goes on from there")
         raise KeyboardInterrupt
     if outcome.cases.reused:
         tell(f"{outcome.cases.reused} cases of an earlier call were not run again")
-    return outcome, writer
+    return outcome
 
 
 def _exit_code(outcome: OutageOutcome, strict: bool) -> int:

@@ -11,9 +11,17 @@ from tractionpower.cosimulation.device_recorder import DeviceRecorder
 from tractionpower.model.scenario import Scenario
 from tractionpower.studies.cases.voltages import case_table, coded
 from tractionpower.studies.ratings.use import Use, ruling, uses
-from tractionpower.supply.ratings import ratings_of
+from tractionpower.supply.compile import compile_network
+from tractionpower.supply.devices import devices_of
+from tractionpower.supply.ratings import Rating, ratings_of
 
 NAN = float("nan")
+
+
+def ratings_by_id(scenario: Scenario) -> dict[str, Rating]:
+    """Return the ratings of all devices of a checked scenario by their identifiers."""
+    devices = devices_of(compile_network(scenario.supply, scenario.line, scenario.limits, conductors=scenario.conductors))
+    return {rating.device_id: rating for rating in ratings_of(scenario, devices)}
 
 
 def device_uses(scenario: Scenario, recorder: DeviceRecorder) -> tuple[Use, ...]:

@@ -10,6 +10,7 @@ from tractionpower.model.base import format_time
 from tractionpower.model.limits import USEFUL_NAMES, common_limits
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.spells import TOLERANCE_V
+from tractionpower.supply.ratings import Rating
 
 Row = Mapping[str, Any]
 """A row of table ``cases``."""
@@ -114,7 +115,16 @@ def failures(checks: Sequence[Check], row: Row) -> tuple[str, ...]:
     return tuple(dict.fromkeys(check.word for check in checks if not check.is_met(row)))
 
 
-def verdicts(checks: Sequence[Check], rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """Return the verdict on each limit by the case that is worst for it."""
-    worst = ((check, check.worst(rows)) for check in checks)
-    return [check.verdict(row) for check, row in worst if row is not None]
+def verdicts(checks: Sequence[Check], rows: Sequence[Row], ratings: Mapping[str, Rating] | None = None) -> list[dict[str, Any]]:
+    """Return the verdict on each limit by the case that is worst for it.
+
+    With `ratings`, by device, the verdict on devices has the source and the status of the rating that rules it.
+    """
+    found = []
+    for check in checks:
+        row = check.worst(rows)
+        if row is not None:
+            rating = (ratings or {}).get(row["utilisation_device"]) if check.figure == "utilisation_percent" else None
+            said = {} if rating is None else {"source": rating.source, "status": rating.status}
+            found.append(check.verdict(row) | said)
+    return found

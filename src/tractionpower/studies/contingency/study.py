@@ -16,6 +16,7 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter, RunWriter
 from tractionpower.results.versions import versions
+from tractionpower.studies.cases.devices import ratings_by_id
 from tractionpower.studies.cases.judgement import checks_of, verdicts
 from tractionpower.studies.cases.measure import measure
 from tractionpower.studies.contingency.envelope import Delays, DeviceEnvelope, LineEnvelope
@@ -112,7 +113,8 @@ class OutageOutcome:
 
     def __init__(self, study: OutageStudy, cases: CasesRun, devices: DeviceEnvelope, scheduler: str | None) -> None:
         scenario, self.cases = study.scenario, cases
-        checks = checks_of(scenario)
+        checks, ratings = checks_of(scenario), ratings_by_id(scenario)
+        said = verdicts(checks, cases.rows, ratings)
         self.run: dict[str, Any] = {
             "format": 1,
             "status": self._status(),
@@ -129,10 +131,10 @@ class OutageOutcome:
             "workers": cases.workers,
             "scheduler": scheduler,
             "cases": cases.counts(),
-            "verdicts": verdicts(checks, cases.rows),
-            "contingency": summary_of(scenario, checks, cases, devices, study.notes),
+            "verdicts": said,
+            "contingency": summary_of(scenario, checks, cases, devices, ratings, study.notes),
         }
-        self.key_figures = figures_of(checks, cases.rows)
+        self.key_figures = figures_of(checks, said, cases.rows)
 
     def _status(self) -> str:
         if self.cases.interrupted:
@@ -213,14 +215,16 @@ def contingency(
     return Results.open(folder)
 
 
-def run_into(outages: OutageStudy, writer: RunWriter, **how: Any) -> OutageOutcome:
+def run_into(outages: OutageStudy, writer: RunWriter, *, full_tables: Path | None = None, **how: Any) -> OutageOutcome:
     """Run a study into a folder; `how` are the keywords of `OutageStudy.execute`.
+
+    Where `full_tables` is given, each case also leaves the whole results of its run in a folder of its own there.
 
     Each case is kept beside the results as soon as it is there, so the same call goes on where an earlier one was stopped,
     and runs again what failed.
     """
     try:
-        outcome = outages.execute(writer, CaseStore(writer.beside_parts), **how)
+        outcome = outages.execute(writer, CaseStore(writer.beside_parts, full_tables), **how)
     except BaseException:
         writer.discard()  # not what is kept of the cases
         raise

@@ -12,6 +12,7 @@ from tractionpower.studies.cases.judgement import Check, failures
 from tractionpower.studies.contingency.envelope import DeviceEnvelope
 from tractionpower.studies.contingency.outages import BASE, GRIDS
 from tractionpower.studies.runner.outcomes import CasesRun
+from tractionpower.supply.ratings import Rating
 
 Row = Mapping[str, Any]
 
@@ -27,7 +28,12 @@ LABELS = ("case", "kind", "subject", "mode", "grid", "status", "reason")
 
 
 def summary_of(
-    scenario: Scenario, checks: Sequence[Check], run: CasesRun, devices: DeviceEnvelope, notes: Sequence[str]
+    scenario: Scenario,
+    checks: Sequence[Check],
+    run: CasesRun,
+    devices: DeviceEnvelope,
+    ratings: Mapping[str, Rating],
+    notes: Sequence[str],
 ) -> dict[str, Any]:
     """Return the summary of a study of outages.
 
@@ -39,6 +45,8 @@ def summary_of(
         What cases are held against.
     run, devices
         What was found.
+    ratings
+        Ratings by device.
     notes
         Outages that were not looked at, and why.
     """
@@ -57,7 +65,7 @@ def summary_of(
         "failing": sum(bool(row["fails"]) for row in outages),
         "failing_beyond_base": sum(bool(row["added"]) for row in outages),
         "not_computed": [{key: row[key] for key in LABELS} for row in run.rows if row["status"] in ("refused", "failed")],
-        "devices": _failing_devices(devices),
+        "devices": _failing_devices(devices, ratings),
         "unrated": _unrated(devices),
         "notes": list(notes),
         "tolerance_s": scenario.feasibility.tolerance_s,
@@ -93,13 +101,14 @@ def _by_kind(outages: Sequence[Row]) -> list[dict[str, Any]]:
     return [found[key] for key in sorted(found, key=lambda key: (GRIDS.index(key[1]), KINDS.index(key[0])))]
 
 
-def _failing_devices(devices: DeviceEnvelope) -> list[dict[str, Any]]:
+def _failing_devices(devices: DeviceEnvelope, ratings: Mapping[str, Rating]) -> list[dict[str, Any]]:
     """Return the devices that do not hold in some case, the most loaded first."""
     rows = [row for row in devices.rows() if row["met"] == "no"]
     rows.sort(key=lambda row: -(row.get("utilisation_percent") or 0.0))
     keys = ("device", "kind", "utilisation_percent", "window_s", "load_a", "permitted_a", "case")
     return [
         {key: row.get(key) for key in keys}
+        | {"source": ratings[row["device"]].source, "status": ratings[row["device"]].status}
         | {"cases": len(devices.failing[row["device"]]), "in_base": BASE in devices.failing[row["device"]]}
         for row in rows[:MOST_TOLD]
     ]
@@ -114,15 +123,13 @@ def _unrated(devices: DeviceEnvelope) -> dict[str, int]:
     return counts
 
 
-def figures_of(checks: Sequence[Check], rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """Return the key figures: the worst of each figure that has a limit, and the greatest rail potential."""
+def figures_of(checks: Sequence[Check], verdicts: Sequence[Mapping[str, Any]], rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """Return the key figures: the worst of each figure that has a limit, by the verdicts, and the greatest rail potential."""
+    names = {check.name: check.figure for check in checks}
     figures = []
-    for check in checks:
-        row = check.worst(rows)
-        if row is not None:
-            said = check.verdict(row)
-            what = f"{check.name}, worst of all cases"
-            figures.append(KeyFigure(check.figure, said["value"], said["place"], said["time"], what, check.status))
+    for said in verdicts:
+        what = f"{said['name']}, worst of all cases"
+        figures.append(KeyFigure(names[said["name"]], said["value"], said["place"], said["time"], what, said["status"]))
     known = [row for row in rows if row.get("rail_potential_v") is not None]
     if known:
         worst = max(known, key=lambda row: row["rail_potential_v"])
