@@ -29,7 +29,9 @@ class Contingency(Declaration):
         default=("bypassed",), description="States that a section cabin which is out takes, each a case of its own."
     )
     devices: tuple[Identifier, ...] | None = Field(
-        default=None, description="Only these substations, section cabins and feeders ('A 1 low_km'); left out: all."
+        default=None,
+        description="Only these substations with their units and feeders, section cabins, feeders ('A 1 low_km') and contact"
+        " lines ('track 1 km 0-10.8'); left out: all.",
     )
     low_grid_voltage_pu: Real | None = field(
         "low_grid_voltage_pu", "Low voltage of the feeding grid, at which each outage is looked at, too; left out: by the limits"
@@ -42,7 +44,11 @@ class Contingency(Declaration):
     grid_voltages: Annotated[tuple[Literal["normal", "low", "high"], ...], Field(min_length=1)] = Field(
         default=("normal", "low", "high"), description="Grid voltages at which each outage is looked at."
     )
-    begins: TimeOfDay | None = Field(default=None, description="Time of day at which outages begin; left out: with the clock.")
+    begins: TimeOfDay | None = Field(
+        default=None,
+        description="Time of day at which outages begin; left out: with the clock, and those of"
+        " units that a reserve replaces after the warm-up.",
+    )
 
     @model_validator(mode="after")
     def _no_repetition(self) -> Contingency:

@@ -295,6 +295,14 @@ def test_a_reserve_unit_comes_in_and_the_overload_until_then_is_permitted():
     assert harder.figures["overloaded"] == 1
 
 
+def test_a_reserve_is_not_awaited_within_the_warm_up():
+    plant = station("A", 0.0, units=2, reserve_units=1, reserve_after_s=20.0)
+    scenario = normal(small(substations=[plant, station("B", 20.0)], clock={"end": 100.0, "warm_up": 30.0}))
+    case = by_id(scenario)["A unit 1 of 2 in service, reserve after 20 s"]
+    events = apply_changes(scenario, case.changes).supply.switch_events
+    assert [(event.time, event.units_in_service) for event in events] == [(30.0, 1), (50.0, 2)]
+
+
 def test_a_reserve_that_feeds_at_once_changes_nothing():
     plant = station("A", 0.0, reserve_units=1, reserve_after_s=0.0)
     found = find_outages(normal(small(substations=[plant, station("B", 20.0)])))

@@ -211,7 +211,9 @@ class _Finder:
         yield Outage("unit", name, f"{units - 1} of {units} in service", (move,), names, takes)
 
     def _until_reserve(self, station: Substation, units: int) -> tuple[Setting, ...]:
-        from_s = self.scenario.clock.start if self.begins_s is None else self.begins_s
+        clock = self.scenario.clock
+        counted_s = clock.start + (clock.warm_up or 0.0)  # what passes within the warm-up would not be seen
+        from_s = counted_s if self.begins_s is None else self.begins_s
         again_s = from_s + station.reserve_after_s
         return (from_s, "units_in_service", units - 1), (again_s, "units_in_service", units)
 
