@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from tractionpower.cosimulation.simulate import simulate
 from tractionpower.errors import InputError, Problem
 from tractionpower.model.library import Library
 from tractionpower.model.scenario import Scenario
@@ -85,6 +84,8 @@ def marks_in(folder: Path) -> list[str]:
 
 def run_load(scenario: Scenario) -> CaseResult:
     """Return figures and rows of a run."""
+    from tractionpower.cosimulation.simulate import simulate  # noqa: PLC0415 - other workers start faster without it
+
     results = simulate(scenario)
     profile = results.table("profile")
     rows = {

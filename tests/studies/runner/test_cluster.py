@@ -50,6 +50,12 @@ def cluster(folder, workers=2):
             process.wait()
 
 
+@pytest.fixture(autouse=True)
+def patience(monkeypatch):
+    """Wait longer for workers: a machine on which other tests run is slow to start them."""
+    monkeypatch.setattr("tractionpower.studies.runner.cluster.ANSWER_S", 60.0)
+
+
 @pytest.fixture(scope="module")
 def address(tmp_path_factory):
     with cluster(tmp_path_factory.mktemp("cluster")) as (address, _):

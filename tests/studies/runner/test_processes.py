@@ -5,7 +5,7 @@ import time
 from functools import partial
 
 import pytest
-from fake_cases import LIBRARY, loads_of, marks_in, measure_load, measure_or_die, run_load
+from fake_cases import LIBRARY, loads_of, marks_in, measure_and_note, measure_load, measure_or_die, run_load
 from small_studies import load, make_scenario
 
 from tractionpower.errors import UsageError
@@ -77,10 +77,13 @@ def test_workers_that_cannot_start_are_told(monkeypatch):
         run_cases(BASE, LIBRARY, loads_of(4), measure_load, CaseStore(), workers=2)
 
 
-def test_no_more_workers_than_cases_and_none_for_known_ones():
-    store, before = CaseStore(), threading.active_count()
-    assert run_cases(BASE, LIBRARY, loads_of(2), measure_load, store, workers=8).workers == 2
+def test_the_first_case_compiles_here_and_there_are_no_more_workers_than_other_cases(monkeypatch, tmp_path):
+    monkeypatch.setattr("tractionpower.studies.runner.run.is_compiled", lambda kernel: False)
+    store, before, work = CaseStore(), threading.active_count(), partial(measure_and_note, folder=str(tmp_path))
+    assert run_cases(BASE, LIBRARY, loads_of(3), work, store, workers=8).workers == 2
+    here = {path.name.split("-")[0] for path in tmp_path.iterdir() if int(path.name.split("-")[1]) == os.getpid()}
+    assert here == {"1"}
     started = time.perf_counter()
-    assert run_cases(BASE, LIBRARY, loads_of(2), measure_load, store, workers=8).run == 0
-    assert time.perf_counter() - started < 0.5
+    assert run_cases(BASE, LIBRARY, loads_of(3), work, store, workers=8).run == 0
+    assert time.perf_counter() - started < 0.5, "for known cases nobody is started"
     assert threading.active_count() <= before

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from tractionpower.cosimulation.simulate import simulate
 from tractionpower.errors import InputError, OutputError
 from tractionpower.model.change import apply_changes
 from tractionpower.model.library import Library
@@ -73,6 +72,8 @@ class Bench:
         scenario = apply_changes(self.base, task.changes, self.library)
         data = pack(self.work(scenario))
         if task.folder is not None:
+            from tractionpower.cosimulation.simulate import simulate  # noqa: PLC0415 - few need it, and it takes a third of a start
+
             simulate(scenario, task.folder, force=True)
         return Reply(data)
 
