@@ -1,15 +1,17 @@
 """Figures of ratings and useful voltages: they show the tables, and stay readable with many devices."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from fake_results import make_case
 from fake_sizing import sized
 
 from tractionpower.reporting import ratings_figures as figures
+from tractionpower.reporting.device_words import supply_points_along_line, window_words, zones_along_line
 from tractionpower.reporting.run_data import RunData
 from tractionpower.reporting.style import GREEN, ORANGE, VERMILION
 from tractionpower.reporting.useful_figures import colour_classes, text_colour, useful_voltage_zones
-from tractionpower.reporting.window_words import window_words
 from tractionpower.results.results import Results
 
 
@@ -46,7 +48,7 @@ def test_with_many_devices_the_worst_of_each_kind_are_shown(no_overlap):
     assert max(figure.get_size_inches()) <= 11.8
     for axes in figure.axes:
         no_overlap(figure, axes.get_yticklabels())
-    assert "the 15 with the highest utilisation of 56" in " ".join(axes.get_title(loc="left") for axes in figure.axes)
+    assert "the 14 with the highest utilisation of 56" in " ".join(axes.get_title(loc="left") for axes in figure.axes)
 
 
 def test_colours_tell_the_margin():
@@ -108,3 +110,11 @@ def test_without_tables_there_are_no_figures(data):
     empty = RunData(Results({}, [], {}), data.scenario)
     drawn = (figures.utilisation, figures.device_load_duration, figures.sharing, figures.demand, useful_voltage_zones)
     assert [draw(empty) for draw in drawn] == [None] * 5
+
+
+def test_zones_and_supply_points_stand_along_the_line():
+    scenario = make_case(substations=11)[1]  # Substation 10 comes before Substation 2 by name
+    names = [f"Substation {k}" for k in range(1, 12)]
+    assert supply_points_along_line(scenario, [*reversed(names), "unknown"]) == [*names, "unknown"]
+    zones = {f"{a}–{b}": [b, a] for a, b in pairwise(names)}
+    assert zones_along_line(scenario, dict(sorted(zones.items()))) == list(zones)

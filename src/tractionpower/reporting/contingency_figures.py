@@ -15,11 +15,11 @@ from matplotlib.lines import Line2D
 
 from tractionpower.model.limits import common_limits
 from tractionpower.reporting.axes import draw_limits, mark_devices, panels_of_lines, voltage_range, with_margin
+from tractionpower.reporting.device_words import window_words
 from tractionpower.reporting.labels import LETTER
 from tractionpower.reporting.outages import COMPUTED, Outages
-from tractionpower.reporting.ratings_figures import TIGHT_PERCENT, margin_colour
+from tractionpower.reporting.ratings_figures import BARE, TIGHT_PERCENT, margin_colour
 from tractionpower.reporting.style import BLUE, GREEN, GREY, INK, ORANGE, PALE, SKY, STYLE, VERMILION, new_figure
-from tractionpower.reporting.window_words import window_words
 
 WIDTH = 11.7
 PORTRAIT = 8.3
@@ -278,9 +278,9 @@ def worst_utilisation(outages: Outages, title: str) -> Figure | None:
                 axes.plot([base], [k], "o", color=BLUE, markersize=4.5, markerfacecolor="white")
             axes.plot([use], [k], "o", color=margin_colour(use, permitted), markersize=5.0)
             text = f"{use:.0f} %, {window_words(row['window_s'])}: {outages.told(row['case'])}"
-            axes.annotate(text, (use, k), (6, 0), textcoords="offset points", va="center", fontsize=6.5)
+            axes.annotate(text, (use, k), (6, 0), textcoords="offset points", va="center", fontsize=6.5, bbox=BARE)
         axes.axvline(permitted, color=INK, linewidth=0.9, linestyle=(0, (5, 3)))
-        axes.set_xlim(0.0, 1.6 * max(float(shown["utilisation_percent"].max()), permitted))
+        axes.set_xlim(0.0, 1.55 * max(float(shown["utilisation_percent"].max()), permitted))
         _name_rows(axes, [str(device) for device in shown["device"]])
         tight = TIGHT_PERCENT / 100.0 * permitted
         axes.set_xlabel(

@@ -12,9 +12,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from tractionpower.reporting.axes import clock_label, set_clock
+from tractionpower.reporting.device_words import (
+    KINDS,
+    kind_order,
+    supply_points_along_line,
+    window_words,
+    zones_along_line,
+)
 from tractionpower.reporting.run_data import RunData
 from tractionpower.reporting.style import BLUE, COLOURS, DASHES, GREEN, GREY, INK, ORANGE, SKY, STYLE, VERMILION, new_figure
-from tractionpower.reporting.window_words import KINDS, kind_order, window_words
 
 WIDTH = 8.3
 """Width of the figures that stand upright on A4 [inches]."""
@@ -34,6 +40,10 @@ TIGHT_PERCENT = 80.0
 
 BAR = 0.155
 """Height of a bar with its label [inches]."""
+
+
+BARE: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+"""Behind texts that a line would cross."""
 
 
 def utilisation(data: RunData) -> Figure | None:
@@ -97,7 +107,7 @@ def _draw_utilisation(axes: Axes, rows: pd.DataFrame, permitted: float) -> None:
     place = np.arange(len(rows), dtype=float)
     drawn = axes.barh(place, values, 0.72, color=[margin_colour(value, permitted) for value in values])
     texts = [f"{value:.0f} %, {window_words(window)}" for value, window in zip(values, rows["window_s"], strict=True)]
-    axes.bar_label(drawn, texts, padding=2, fontsize=7, color=INK)
+    axes.bar_label(drawn, texts, padding=2, fontsize=7, color=INK, bbox=BARE)
     axes.axvline(permitted, color=INK, linewidth=0.9, linestyle=(0, (5, 3)))
     axes.set_yticks(place, rows["device"].astype(str), fontsize=7)
     axes.set_ylim(len(rows) - 0.4, -0.6)
@@ -150,7 +160,8 @@ def sharing(data: RunData) -> Figure | None:
     rows = data.table("sharing")
     if rows is None:
         return None
-    zones = list(dict.fromkeys(rows["zone"].astype(str)))
+    both = rows.groupby(rows["zone"].astype(str), sort=False)["substation"].agg(list)
+    zones = zones_along_line(data.scenario, {str(zone): names for zone, names in both.items()})
     with mpl.rc_context(STYLE):
         figure = new_figure(WIDE, 1.5 + 0.3 * len(zones))
         shares, currents = figure.subplots(1, 2, sharey=True)
@@ -192,7 +203,7 @@ def demand(data: RunData) -> Figure | None:
     rows = data.table("demand")
     if rows is None:
         return None
-    points = list(dict.fromkeys(rows["supply_point"].astype(str)))
+    points = supply_points_along_line(data.scenario, rows["supply_point"].astype(str))
     columns = 1 if len(points) <= 3 else 2 if len(points) <= 16 else 3
     lines = -(-len(points) // columns)
     with mpl.rc_context(STYLE):

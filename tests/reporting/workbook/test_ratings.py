@@ -125,3 +125,18 @@ def test_a_device_that_is_named_like_a_formula_stays_text(write):
     assert cells
     assert all(cell.data_type == "s" for cell in cells)
     assert all(cell.data_type != "f" for name in SHEETS for row in book[name].iter_rows() for cell in row)
+
+
+def test_sources_stand_once_below_the_ratings(book):
+    said = texts(book["Ratings"])
+    (source,) = (text for text in said if text.startswith("1: "))
+    assert source.startswith("1: recalled from memory. IEC 60146-1-1 as recalled")
+    assert {row["source"] for row in read_table(book["Ratings"])} == {1, None}
+
+
+def test_devices_stand_along_the_line(write):
+    results, scenario = make_case(substations=11)
+    book = write(sized(results, scenario), scenario)
+    for sheet, first in (("Peaks", "device"), ("Breakers", "feeder")):
+        feeders = [row[first] for row in read_table(book[sheet]) if row[first].endswith("1 low_km")]
+        assert list(dict.fromkeys(feeders)) == [f"Substation {k} 1 low_km" for k in range(1, 12)]

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from openpyxl.formatting.rule import FormulaRule
 
+from tractionpower.reporting.device_words import supply_points_along_line, zones_along_line
 from tractionpower.reporting.labels import CLOCK_STEPS_S
 from tractionpower.reporting.workbook.cells import RED_FILL, fill
 from tractionpower.reporting.workbook.page import Block, Book, Column
@@ -74,7 +75,7 @@ def _demand(book: Book) -> None:
         "Power taken from the feeding grid: that at the busbars and the heat of the rectifiers where the study tells it. Red:"
         " beyond the contracted power."
     )
-    names = list(dict.fromkeys(rows["supply_point"].astype(str)))
+    names = supply_points_along_line(book.facts.scenario, rows["supply_point"].astype(str))
     summary = (
         Column("supply point", widest=34),
         Column("highest demand [kW]", "0"),
@@ -146,4 +147,8 @@ def _sharing(book: Book) -> None:
         Column("highest current [A]", "0"),
     )
     names = ("zone", "substation", "mean_current_a", "share_percent", "highest_current_a")
+    both = rows.groupby(rows["zone"].astype(str), sort=False)["substation"].agg(list)
+    pairs = {str(zone): two for zone, two in both.items()}
+    order = {zone: number for number, zone in enumerate(zones_along_line(book.facts.scenario, pairs))}
+    rows = rows.assign(_at=rows["zone"].astype(str).map(order)).sort_values("_at", kind="stable")
     page.table(columns, (tuple(row[name] for name in names) for row in rows.to_dict("records")), frozen=True)

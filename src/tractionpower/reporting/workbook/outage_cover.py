@@ -59,7 +59,8 @@ def _failing(outages: Outages) -> Iterator[Said]:
     """Tell for each thing that fails in how many cases, and name the worst."""
     for what, cases in outages.failing().items():
         named = "\n".join(f"{outages.told(case)}: {words}" for case, words in cases[:MOST_NAMED])
-        more = f"\nand {len(cases) - MOST_NAMED} more cases, see sheet Outages" if len(cases) > MOST_NAMED else ""
+        left = len(cases) - MOST_NAMED
+        more = f"\nand {left} more case{'s' if left > 1 else ''}, see sheet Outages" if left > 0 else ""
         yield f"Fails at: {what}", f"{named}{more}", "bad"
 
 

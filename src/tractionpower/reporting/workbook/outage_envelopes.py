@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from tractionpower.reporting.device_words import KINDS, kind_order, window_words
 from tractionpower.reporting.outages import Outages
 from tractionpower.reporting.places import told
-from tractionpower.reporting.window_words import KINDS, kind_order, window_words
 from tractionpower.reporting.workbook.page import Block, Book, Column
 from tractionpower.reporting.workbook.plots import COLOURS, GREY, Line, draw, scatter
 from tractionpower.reporting.workbook.ratings import HOLDS, UNRATED, banner, colour_use, colour_word
@@ -25,12 +25,12 @@ _DEVICES = (
     Column(BASE_USE, "0.0"),
     Column(USE, "0.0"),
     Column(HOLDS, "beside"),
-    Column("worst case", widest=46),
+    Column("worst case", widest=64),
     Column("window that rules", "beside"),
     Column("load in it [A]", "0"),
     Column("permitted in it [A]", "0"),
     Column("highest current [A]", "0"),
-    Column("case of the highest current", "beside", 46),
+    Column("case of the highest current", "beside", 64),
 )
 
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import pandas as pd
 from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
+from tractionpower.reporting.device_words import KINDS, kind_order, window_words
 from tractionpower.reporting.ratings_figures import TIGHT_PERCENT
-from tractionpower.reporting.window_words import KINDS, kind_order, window_words
 from tractionpower.reporting.workbook.cells import AMBER_FILL, GREEN_FILL, PLAIN_FILL, RED_FILL, fill, put
-from tractionpower.reporting.workbook.facts import KNOWN_AS
+from tractionpower.reporting.workbook.facts import KNOWN_AS, Facts
 from tractionpower.reporting.workbook.page import LINE_POINTS, Block, Book, Column, Page
 
 USE, HOLDS = "utilisation [%]", "holds"
@@ -32,7 +33,7 @@ _LOAD = (
     Column(HOLDS, "beside"),
     Column("that window begins", "time"),
 )
-_SOURCE = (Column("status of the rating", "beside", 24), Column("source of the rating", widest=70))
+_SOURCE = (Column("status of the rating", "beside", 24), Column("source", "0"))
 
 KNOWN = KNOWN_AS | {"derived": "derived from other inputs"}
 
@@ -61,9 +62,10 @@ def add(book: Book) -> None:
         Column("duty class", "beside", 16),
         Column("window that rules", "beside"),
     )
-    block = page.table((*columns, *_LOAD, *_SOURCE), map(_ruling_row, ruling.to_dict("records")), frozen=True)
+    block = page.table((*columns, *_LOAD, *_SOURCE), _ruling_rows(ruling), frozen=True)
     colour_use(block, USE, permitted)
     colour_word(block, HOLDS)
+    _sources(page, ruling)
     _by_window(book, rows, permitted)
 
 
@@ -71,6 +73,16 @@ def in_order(rows: pd.DataFrame) -> pd.DataFrame:
     """Return rows of devices by kind and along the line."""
     kinds = rows["kind"].astype(str).map(kind_order).astype(int)
     return rows.assign(_kind=kinds).sort_values(["_kind", "from_km", "device"], kind="stable").drop(columns="_kind")
+
+
+def places_of(facts: Facts) -> dict[str, tuple[int, float]]:
+    """Return kind and place of every device, by which others than the ratings are ordered."""
+    rows = facts.table("ratings")
+    if rows.empty:
+        return {}
+    found = rows.drop_duplicates("device")
+    places = zip(found["device"].astype(str), found["kind"].astype(str), found["from_km"], strict=True)
+    return {device: (kind_order(kind), float(km)) for device, kind, km in places}
 
 
 def one_for_each(rows: pd.DataFrame) -> pd.DataFrame:
@@ -118,10 +130,28 @@ def _load(row: dict[Any, Any]) -> tuple[Any, ...]:
     return *values, str(row["met"]) or UNRATED, row["from_s"]
 
 
-def _ruling_row(row: dict[Any, Any]) -> tuple[Any, ...]:
-    status = str(row["status"])
-    rated = (row["rated_current_a"], row["duty_class"], window_words(row["window_s"]))
-    return *_device(row), *rated, *_load(row), KNOWN.get(status, status), row["source"]
+def _ruling_rows(ruling: pd.DataFrame) -> Iterator[tuple[Any, ...]]:
+    numbers = _numbers(ruling)
+    for row in ruling.to_dict("records"):
+        status = str(row["status"])
+        rated = (row["rated_current_a"], row["duty_class"], window_words(row["window_s"]))
+        yield *_device(row), *rated, *_load(row), KNOWN.get(status, status), numbers.get((status, str(row["source"])))
+
+
+def _numbers(ruling: pd.DataFrame) -> dict[tuple[str, str], int]:
+    """Return a number for each source of ratings, which are too long to stand in every row."""
+    pairs = zip(ruling["status"].astype(str), ruling["source"].astype(str), strict=True)
+    return {pair: number for number, pair in enumerate(dict.fromkeys(pair for pair in pairs if any(pair)), 1)}
+
+
+def _sources(page: Page, ruling: pd.DataFrame) -> None:
+    """Write below the ratings where they come from."""
+    numbers = _numbers(ruling)
+    if not numbers:
+        return
+    page.section("Sources of the ratings")
+    for (status, source), number in numbers.items():
+        page.wrapped(f"{number}: {KNOWN.get(status, status)}. {source}")
 
 
 def _by_window(book: Book, rows: pd.DataFrame, permitted: float) -> None:

@@ -1,0 +1,54 @@
+"""Windows and kinds of devices in words, and zones and supply points in their order along the line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from tractionpower.model.scenario import Scenario
+
+KINDS = {
+    "unit": "Rectifier units",
+    "substation": "Substations",
+    "feeder": "Feeders",
+    "return_feeder": "Return cables",
+    "cabin_feeder": "Feeders of section cabins",
+    "switch": "Switches",
+    "contact_line": "Contact-line sections",
+    "rails": "Rail sections",
+    "supply_point": "Supply points",
+}
+"""Kinds of devices in words, in the order of sheets and figures."""
+
+
+def window_words(seconds: float) -> str:
+    """Return the length of a window in words; 0 is the whole run.
+
+    >>> window_words(900.0), window_words(0.0), window_words(7200.0), window_words(10.0)
+    ('15 min', 'whole run', '2 h', '10 s')
+    """
+    if not seconds > 0.0:
+        return "whole run"
+    for unit, size in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= size and seconds % size == 0.0:
+            return f"{seconds / size:g} {unit}"
+    return f"{seconds:g} s"
+
+
+def kind_order(kind: str) -> int:
+    """Return the place of a kind of devices among all kinds."""
+    return list(KINDS).index(kind) if kind in KINDS else len(KINDS)
+
+
+def supply_points_along_line(scenario: Scenario, names: Iterable[str]) -> list[str]:
+    """Return supply points in the order of the first substation that each feeds."""
+    first: dict[str, float] = {}
+    for station in sorted(scenario.supply.substations, key=lambda station: (station.km, station.id)):
+        for name in (station.supply_point or station.id, station.id):
+            first.setdefault(name, station.km)
+    return sorted(dict.fromkeys(names), key=lambda name: (first.get(name, float("inf")), name))
+
+
+def zones_along_line(scenario: Scenario, substations: Mapping[str, Iterable[str]]) -> list[str]:
+    """Return zones, each given with its substations, in the order of the kilometres of these."""
+    km = {station.id: station.km for station in scenario.supply.substations}
+    return sorted(substations, key=lambda zone: (sorted(km.get(name, float("inf")) for name in substations[zone]), zone))
