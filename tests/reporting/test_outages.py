@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from fake_results import make_case
 from fake_sizing import outages
+from openpyxl import load_workbook
 
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.outages import Outages
+from tractionpower.reporting.reports import write_reports
 from tractionpower.results.results import Results
 
 
@@ -92,3 +94,11 @@ def test_without_cases_nothing_is_told(scenario: Scenario):
     empty = Outages(Results({}, [], {}, scenario), scenario)
     assert (list(empty.groups()), empty.grids, empty.added_s, empty.failing()) == ([], [], {}, {})
     assert empty.told("some case") == "some case"
+
+
+def test_reports_of_a_folder_of_outages_are_chosen_by_its_kind(scenario, tmp_path):
+    full = outages(scenario, grids=("normal",), feeders=False)
+    paths = write_reports(full, scenario, tmp_path)
+    assert {"envelope_voltage.png", "report.xlsx"} <= {path.name for path in paths}
+    assert "Outages" in load_workbook(tmp_path / "report.xlsx", read_only=True).sheetnames
+    assert not (tmp_path / "figures" / "voltage_along_line.png").exists()

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from tractionpower.model.limits import common_limits
 from tractionpower.reporting.axes import draw_limits, mark_devices, panels_of_lines, voltage_range, with_margin
 from tractionpower.reporting.device_words import window_words
-from tractionpower.reporting.labels import LETTER
+from tractionpower.reporting.labels import LETTER, row_name
 from tractionpower.reporting.outages import COMPUTED, Outages
 from tractionpower.reporting.ratings_figures import BARE, TIGHT_PERCENT, margin_colour
 from tractionpower.reporting.style import BLUE, GREEN, GREY, INK, ORANGE, PALE, SKY, STYLE, VERMILION, new_figure
@@ -214,7 +214,7 @@ def _value(case: Mapping[str, Any] | None, name: str) -> float:
 
 
 def _name_rows(axes: Axes, names: Sequence[str]) -> None:
-    axes.set_yticks(range(len(names)), names, fontsize=7)
+    axes.set_yticks(range(len(names)), [row_name(name) for name in names], fontsize=7)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
 

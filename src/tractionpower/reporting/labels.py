@@ -11,6 +11,19 @@ LETTER, LINE = 0.075, 0.17
 """Width of a letter and height of a line of small text [inches]."""
 
 
+MOST_LETTERS = 44
+"""Letters of a name beside a row of a figure."""
+
+
+def row_name(text: str) -> str:
+    """Return a name beside a row of a figure, cut where it would take the room of what it names.
+
+    >>> row_name("track 1")
+    'track 1'
+    """
+    return text if len(text) <= MOST_LETTERS else f"{text[: MOST_LETTERS - 1]}…"
+
+
 def fitting(places: Sequence[float], important: Sequence[bool], gap: float | Sequence[float]) -> list[int]:
     """Return the indices of the labels to show, rising by place, so that any two are `gap` or more apart.
 

@@ -13,6 +13,7 @@ from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 
 from tractionpower.reporting.axes import mark_devices
+from tractionpower.reporting.labels import row_name
 from tractionpower.reporting.outages import COMPUTED, KINDS_WORDS, Outages
 from tractionpower.reporting.places import told
 from tractionpower.reporting.style import INK, STYLE, VERMILION, new_figure
@@ -99,7 +100,7 @@ def _draw(outages: Outages, rows: pd.DataFrame, tracks: Sequence[str], classes: 
         axes.set_facecolor("#e4e4e4")
         axes.set_xlim(edges[0], edges[-1])
         axes.set_ylim(len(rows), 0)
-        axes.set_yticks(np.arange(len(rows)) + 0.5, rows["words"], fontsize=6.5)
+        axes.set_yticks(np.arange(len(rows)) + 0.5, [row_name(words) for words in rows["words"]], fontsize=6.5)
         axes.tick_params(axis="y", length=0)
         red = f"; red: below {classes[0]:g} V" if below else ""
         axes.set_xlabel(f"kilometre of the line [km]; white ring: what is out; grey: no voltage or no train{red}")

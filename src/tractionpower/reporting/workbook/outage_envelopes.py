@@ -21,7 +21,7 @@ USE, BASE_USE = "utilisation in the worst case [%]", "with nothing out [%]"
 
 _DEVICES = (
     Column("device", widest=34),
-    Column("kind", widest=22),
+    Column("kind", widest=28),
     Column(BASE_USE, "0.0"),
     Column(USE, "0.0"),
     Column(HOLDS, "beside"),

@@ -22,7 +22,7 @@ Places = Mapping[str, tuple[int, float]]
 
 _PEAKS = (
     Column("device", widest=34),
-    Column("kind", widest=22),
+    Column("kind", widest=28),
     Column("highest current [A]", "0"),
     Column("at", "time"),
     Column("train", "beside", 24),

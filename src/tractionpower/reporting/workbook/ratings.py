@@ -19,7 +19,7 @@ UNRATED = "not rated"
 
 _DEVICE = (
     Column("device", widest=34),
-    Column("kind", widest=22),
+    Column("kind", widest=28),
     Column("station", widest=22),
     Column("track"),
     Column("from [km]", "0.000"),
@@ -141,7 +141,7 @@ def _ruling_rows(ruling: pd.DataFrame) -> Iterator[tuple[Any, ...]]:
 def _numbers(ruling: pd.DataFrame) -> dict[tuple[str, str], int]:
     """Return a number for each source of ratings, which are too long to stand in every row."""
     pairs = zip(ruling["status"].astype(str), ruling["source"].astype(str), strict=True)
-    return {pair: number for number, pair in enumerate(dict.fromkeys(pair for pair in pairs if any(pair)), 1)}
+    return {pair: number for number, pair in enumerate(dict.fromkeys(pair for pair in pairs if pair[0]), 1)}
 
 
 def _sources(page: Page, ruling: pd.DataFrame) -> None:
