@@ -166,7 +166,7 @@ SIZING_TABLES: dict[str, tuple[Column, ...]] = {
         _CASE,
         column("track", "Tracks of the return conductor, several by blanks.", "text"),
         column("km", "Place along the line.", "f8"),
-        column("lowest_potential_v", "Lowest potential of the rails against remote earth."),
+        column("lowest_potential_v", "Lowest potential of the rails against remote earth, of trains at the nearest place."),
         column("highest_potential_v", "Highest potential."),
     ),
     "case_trains": (

@@ -1,4 +1,8 @@
-"""The greatest rail potentials of a run, at every place along the line."""
+"""The greatest rail potentials of a run, at every place along the line.
+
+What is found under a train counts at the fixed place that is nearest to it: as places of their own, stretches that few trains
+pass would lie beside fixed places, which are looked at in every step, and a line through both would jump up and down.
+"""
 
 from __future__ import annotations
 
@@ -63,15 +67,27 @@ class RailWatch:
 
     def profile(self) -> pa.Table:
         """Return table ``case_rails`` without the column case, by tracks and kilometre; empty where no earth is defined."""
-        where = [*self._fixed, *zip(self._bin_tracks, self._places.bin_km.tolist(), strict=True)]
         found: dict[tuple[str, float], tuple[float, float]] = {}
-        for place, (low, high) in zip(where, np.concatenate([self._fixed_v, self._bin_v], axis=1).T.tolist(), strict=True):
+        for place, (low, high) in zip(
+            self._where(), np.concatenate([self._fixed_v, self._bin_v], axis=1).T.tolist(), strict=True
+        ):
             if np.isfinite(low):
                 known = found.get(place, (np.inf, -np.inf))
                 found[place] = (min(low, known[0]), max(high, known[1]))
         ends = np.array([found[key] for key in sorted(found)]).reshape(-1, 2)
         columns = {"lowest_potential_v": ends[:, 0], "highest_potential_v": ends[:, 1]}
         return case_table("case_rails", by_place("track", found) | columns)
+
+    def _where(self) -> list[tuple[str, float]]:
+        """Return tracks and kilometre of all fixed places, then of the bins of trains: those of the nearest fixed place."""
+        of_tracks: dict[str, list[float]] = {}
+        for tracks, km in self._fixed:
+            of_tracks.setdefault(tracks, []).append(km)
+        near = []
+        for tracks, km in zip(self._bin_tracks, self._places.bin_km.tolist(), strict=True):
+            fixed = of_tracks.get(tracks, [km])
+            near.append((tracks, fixed[int(np.abs(np.array(fixed) - km).argmin())]))
+        return [*self._fixed, *near]
 
 
 def _rails_at(supply: SupplyTables, places: Places) -> list[str]:
