@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tractionpower.cli.messages import tell, tell_results
+from tractionpower.cli.options import Force, NoReports
+
 if TYPE_CHECKING:
     from tractionpower.studies.compare.study import Comparison
 
@@ -28,8 +31,8 @@ def compare(
     out: Annotated[
         Path | None, typer.Option("--out", help="Folder of the comparison; default reports/<study>-compare/, or -measured/.")
     ] = None,
-    no_reports: Annotated[bool, typer.Option("--no-reports", help="Write the tables only, no figures and no workbook.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace what is there, even results of another study.")] = False,
+    no_reports: NoReports = False,
+    force: Force = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the errors against a measurement as JSON.")] = False,
 ) -> None:
     """Compare the results of several runs, or a run and a measurement."""
@@ -51,8 +54,6 @@ def compare(
 
 def _compare_folders(folders: list[str], base: str | None, out: Path | None, *, no_reports: bool, force: bool) -> None:
     from tractionpower.cli.compare_summary import show
-    from tractionpower.cli.messages import tell, tell_beside
-    from tractionpower.cli.report import tell_reports
     from tractionpower.studies.compare.study import compare_folders, write_comparison
 
     comparison = compare_folders(folders, base)
@@ -62,13 +63,10 @@ def _compare_folders(folders: list[str], base: str | None, out: Path | None, *, 
     writer = write_comparison(comparison, folder, force=force)
     show(comparison)
     reports = [] if no_reports else _write_reports(comparison, folder)
-    tell(f"results: {folder}")
-    tell_reports(reports)
-    tell_beside(writer.beside)
+    tell_results(folder, reports, writer.beside)
 
 
 def _write_reports(comparison: Comparison, folder: Path) -> list[Path]:
-    from tractionpower.cli.messages import tell
     from tractionpower.reporting.reports import write_reports
     from tractionpower.results.results import Results
 

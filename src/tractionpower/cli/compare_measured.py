@@ -4,12 +4,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
+
+from tractionpower.cli.messages import DONE, NOT_COMPLETED, echo_json, tell_problems, tell_results
 
 if TYPE_CHECKING:
     from tractionpower.studies.measured.study import Comparison
@@ -31,8 +32,6 @@ def compare_measured(
     force, no_reports, as_json
         Replace what is there; write tables only; print the errors as JSON.
     """
-    from tractionpower.cli.messages import DONE, NOT_COMPLETED, tell, tell_problems
-    from tractionpower.cli.report import tell_reports
     from tractionpower.errors import UsageError
     from tractionpower.reporting.measured import write_measured_reports
     from tractionpower.results.results import Results
@@ -50,12 +49,11 @@ def compare_measured(
     run = writer.finish(comparison.run, [])
     tell_problems(comparison.problems)
     if as_json:
-        typer.echo(json.dumps(_document(comparison, target), indent=1, ensure_ascii=False, allow_nan=False))
+        echo_json(_document(comparison, target))
     else:
         _show(comparison)
     reports = [] if no_reports else write_measured_reports(Results.open(target), target)
-    tell(f"results: {target}")
-    tell_reports(reports)
+    tell_results(target, reports, writer.beside)
     done = any(each.errors["rows"] for each in comparison.series) and run["status"] == "complete"
     raise typer.Exit(DONE if done else NOT_COMPLETED)
 

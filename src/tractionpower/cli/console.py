@@ -6,9 +6,8 @@ from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -19,13 +18,6 @@ WIDTH = 110
 
 PIPE_WIDTH = 250
 """Columns of a table at most where no window limits it [characters]."""
-
-
-class Bar(Protocol):
-    """Moves a bar."""
-
-    def __call__(self, done: int, total: int, words: str | None = None, /) -> None:
-        """Take the steps done, the steps in all, and what is being done where that changes."""
 
 
 def new_console() -> Console:
@@ -50,26 +42,6 @@ def new_table(texts: Sequence[str], numbers: Sequence[str]) -> Table:
     for heading in numbers:
         table.add_column(heading, justify="right", no_wrap=True, vertical="bottom")
     return table
-
-
-@contextmanager
-def progress_bar(words: str) -> Iterator[Bar]:
-    """Show a bar while something lasts; it is moved by steps done and steps in all."""
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    from tractionpower.cli.closed_pipes import PatientConsole
-
-    bar = Progress(
-        TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"), TimeElapsedColumn(),
-        console=PatientConsole(stderr=True), transient=True,
-    )  # fmt: skip
-    with bar:
-        task = bar.add_task(words, total=None)
-
-        def update(done: int, total: int, now: str | None = None, /) -> None:
-            bar.update(task, completed=done, total=total, description=words if now is None else now)
-
-        yield update
 
 
 def warn_of_compilation(kernel: str) -> None:

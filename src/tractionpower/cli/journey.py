@@ -5,11 +5,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from tractionpower.cli.messages import DONE, NOT_COMPLETED, tell, tell_results
+from tractionpower.cli.options import Force, Study, out_option, set_option
+from tractionpower.cli.study_call import StudyCall, call_study
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +22,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from tractionpower.errors import OutputError
-    from tractionpower.io.scenario_files import LoadedScenario
     from tractionpower.model.line import Line
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.store import RunWriter
@@ -47,7 +51,7 @@ class Form(StrEnum):
 
 
 def journey(  # noqa: PLR0917 - typer makes options of them
-    study: Annotated[str, typer.Argument(help="Folder with a study.yaml, such a file, or the name of a shipped line.")],
+    study: Study,
     train: Annotated[
         list[str] | None, typer.Option("--train", metavar="ID", help="A train of the timetable; left out: all.")
     ] = None,
@@ -56,31 +60,25 @@ def journey(  # noqa: PLR0917 - typer makes options of them
     ] = None,
     form: Annotated[Form, typer.Option("--form", help="Integrate in steps of time or of speed.")] = Form.TIME,
     step: Annotated[float | None, typer.Option("--step", metavar="S", help="Step; default that of the study's clock.")] = None,
-    changes: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change an input, e.g. trains[en57].max_speed_kmh=100."),
-    ] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="Folder of the results; default reports/<study>/journey/ here.")
-    ] = None,
+    changes: Annotated[list[str] | None, set_option(", e.g. trains[en57].max_speed_kmh=100")] = None,
+    out: Annotated[Path | None, out_option("reports/<study>/journey/")] = None,
     no_reports: Annotated[bool, typer.Option("--no-reports", help="Write the tables only, no figures.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace what is there, even results of another study.")] = False,
+    force: Force = False,
 ) -> None:
     """Run trains at a given voltage, without the network."""
     from tractionpower.cli.console import new_console, warn_of_compilation
-    from tractionpower.cli.messages import DONE, NOT_COMPLETED, tell, tell_beside
-    from tractionpower.io.scenario_files import load_scenario
     from tractionpower.studies.journeys import choose_runs, why_not_complete
 
     _check_number("--voltage", voltage, "V", 1.0, 100_000.0)
     _check_number("--step", step, "s", 0.02, 5.0)
-    loaded = load_scenario(study)
-    scenario = loaded.changed(changes or [])
+    call = call_study(study, changes, out)
+    if out is None:
+        call = replace(call, folder=call.folder / "journey")
+    scenario, folder = call.scenario, call.folder
     runs = choose_runs(scenario, train)
-    folder = out if out is not None else Path("reports") / loaded.folder.name / "journey"
-    tell(f"{scenario.name or loaded.folder.name}: {loaded.origin}")
+    call.greet()
     warn_of_compilation("run_journey" if form is Form.TIME else "run_over_speed")
-    outcome, writer = _compute(loaded, scenario, folder, force, voltage_v=voltage, step_s=step, form=form.value, runs=runs)
+    outcome, writer = _compute(call, force, voltage_v=voltage, step_s=step, form=form.value, runs=runs)
     shown = runs if train else runs[:MOST]
     unwritten = None if no_reports else _write_figures(outcome, scenario, folder, shown)
     _show(new_console(), outcome, scenario.line, shown)
@@ -94,8 +92,7 @@ def journey(  # noqa: PLR0917 - typer makes options of them
             tell(why_not_complete(each))
     if unwritten is not None:
         raise unwritten
-    tell(f"results: {folder}")
-    tell_beside(writer.beside)
+    tell_results(folder, [], writer.beside)
     raise typer.Exit(DONE if outcome.complete else NOT_COMPLETED)
 
 
@@ -106,25 +103,14 @@ def _check_number(option: str, value: float | None, unit: str, least: float, mos
         raise UsageError(f"{option} {value:g}: allowed are {least:g} to {most:g} {unit}")
 
 
-def _compute(
-    loaded: LoadedScenario, scenario: Scenario, folder: Path, force: bool, **options: Any
-) -> tuple[JourneyOutcome, RunWriter]:
-    from tractionpower.cli.messages import tell_problems
-    from tractionpower.errors import InputError
-    from tractionpower.results.store import RunWriter
+def _compute(call: StudyCall, force: bool, **options: Any) -> tuple[JourneyOutcome, RunWriter]:
     from tractionpower.studies.journeys import compute_journeys
 
-    study = f"{loaded.folder.name}, journey"  # so that it never mixes with a run of the same study
-    writer = RunWriter(folder, study, scenario.input_hash, force=force, scenario=scenario)
-    try:
-        outcome = compute_journeys(scenario, writer, study, **options)
-        tell_problems(loaded.provenance.place([*loaded.problems, *outcome.warnings]))
+    study = f"{call.name}, journey"  # so that it never mixes with a run of the same study
+    with call.preparing(force=force, study=study) as writer:
+        outcome = compute_journeys(call.scenario, writer, study, **options)
+        call.warn(outcome.warnings)
         writer.finish(outcome.run, outcome.key_figures)
-    except BaseException as error:
-        writer.discard()
-        if isinstance(error, InputError):
-            raise InputError(loaded.provenance.place(error.problems)) from None
-        raise
     return outcome, writer
 
 

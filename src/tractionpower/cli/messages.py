@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from typing import IO, TYPE_CHECKING, Protocol, runtime_checkable
+from typing import IO, TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import typer
 
@@ -75,6 +76,29 @@ def tell(text: str) -> None:
         print(text, file=sys.stderr)
     except BrokenPipeError:
         close_quietly(sys.stderr)
+
+
+def echo_json(document: Mapping[str, Any]) -> None:
+    """Print what a command has found as JSON."""
+    typer.echo(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))
+
+
+def tell_results(folder: Path, reports: Sequence[Path], beside: Iterable[Path]) -> None:
+    """Say where results and reports are; `beside` are files of the results that another program held open."""
+    tell(f"results: {folder}")
+    tell_reports(reports)
+    tell_beside(beside)
+
+
+def tell_reports(paths: Sequence[Path]) -> None:
+    """Say where the reports are, and which of them stands beside one that is held open."""
+    figures = [path for path in paths if path.suffix == ".png"]
+    if figures:
+        tell(f"figures: {len(figures)} in {figures[0].parent}")
+    for path in paths:
+        if path not in figures:
+            tell(f"report: {path}")
+    tell_beside(paths)
 
 
 def tell_beside(paths: Iterable[Path]) -> None:

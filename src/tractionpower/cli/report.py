@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -18,7 +17,7 @@ def report(
     ] = False,
 ) -> None:
     """Write the reports of an earlier run again."""
-    from tractionpower.cli.messages import tell
+    from tractionpower.cli.messages import tell, tell_reports
     from tractionpower.errors import UsageError
     from tractionpower.reporting.measured import write_measured_reports
     from tractionpower.reporting.reports import write_reports
@@ -39,16 +38,3 @@ def report(
     tell_reports(write_reports(results, scenario, folder / PARTIAL if partial else folder))
     if results.run.get("status") != "complete":
         tell(f"the run is {results.run.get('status')}: the reports hold what is in its tables")
-
-
-def tell_reports(paths: Sequence[Path]) -> None:
-    """Say where the reports are, and which of them stands beside one that is held open."""
-    from tractionpower.cli.messages import tell, tell_beside
-
-    figures = [path for path in paths if path.suffix == ".png"]
-    if figures:
-        tell(f"figures: {len(figures)} in {figures[0].parent}")
-    for path in paths:
-        if path not in figures:
-            tell(f"report: {path}")
-    tell_beside(paths)

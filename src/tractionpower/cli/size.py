@@ -4,28 +4,26 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tractionpower.cli.messages import tell
+from tractionpower.cli.options import Force, NoReports, Study, VerdictAsJson, out_option, set_option, strict_option
+from tractionpower.cli.progress import steps_bar
+from tractionpower.cli.study_call import StudyCall, call_study, exit_code, keeping, workers_or_cores
+
 if TYPE_CHECKING:
-    from tractionpower.io.scenario_files import LoadedScenario
-    from tractionpower.model.library import Library
-    from tractionpower.model.scenario import Scenario
     from tractionpower.results.store import RunWriter
     from tractionpower.studies.ratings.study import Sized
 
 
 def size(
-    study: Annotated[str, typer.Argument(help="Folder with a study.yaml, such a file, or the name of a shipped line.")],
+    study: Study,
     *,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder of the results; default reports/<study>-size/ here.")] = None,
-    changes: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change an input, e.g. supply.substations[A].units=2."),
-    ] = None,
+    out: Annotated[Path | None, out_option("reports/<study>-size/")] = None,
+    changes: Annotated[list[str] | None, set_option(", e.g. supply.substations[A].units=2")] = None,
     search: Annotated[
         bool, typer.Option("--search", help="Search for the least equipment that meets the limits, outages included.")
     ] = False,
@@ -35,104 +33,63 @@ def size(
     scheduler: Annotated[
         str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Dask scheduler whose workers run the search.")
     ] = None,
-    no_reports: Annotated[bool, typer.Option("--no-reports", help="Write the tables only, no figures and no workbook.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace what is there, even results of another study.")] = False,
-    strict: Annotated[bool, typer.Option("--strict", help="Exit with 4 when a device or a limit does not hold.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the verdict as JSON.")] = False,
+    no_reports: NoReports = False,
+    force: Force = False,
+    strict: Annotated[bool, strict_option("a device or a limit does not hold")] = False,
+    as_json: VerdictAsJson = False,
 ) -> None:
     """Rate every device of the supply: what it carries, what it may, what is left."""
     from tractionpower.cli.console import warn_of_compilation
-    from tractionpower.cli.feasibility import study_name
-    from tractionpower.cli.messages import NOT_COMPLETED, tell, tell_beside, tell_problems
-    from tractionpower.cli.report import tell_reports
-    from tractionpower.cli.run import write_run_reports
     from tractionpower.cli.size_summary import show
-    from tractionpower.io.scenario_files import load_scenario
-    from tractionpower.reporting.reports import WORKBOOK
 
-    loaded = load_scenario(study)
-    scenario = loaded.changed(changes or [])
-    name = study_name(loaded)
-    folder = out if out is not None else Path("reports") / f"{name}-size"
-    tell(f"{scenario.name or name}: {loaded.origin}")
+    call = call_study(study, changes, out, "size")
+    call.greet()
     warn_of_compilation("advance")
-    sized, writer = _size(loaded, scenario, (name, folder), force=force, goes_on=search)
-    tell_problems(loaded.provenance.place([*loaded.problems, *sized.warnings]))
+    sized, writer = _size(call, force=force, goes_on=search)
+    call.warn(sized.warnings)
     run, is_stopped = sized.outcome.run, False
     if search:
-        run, is_stopped = _searched(scenario, loaded.library, run, writer, (workers, scheduler))
+        run, is_stopped = _searched(call, run, writer, workers, scheduler)
     if as_json:
-        document = {"format": 1, "study": name, "folder": str(folder), **run["size"]}
-        typer.echo(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))
+        call.echo(run["size"])
     else:
         show(run)
-    if not no_reports:
-        tell("writing figures and workbook")
-    reports, unwritten = ([], None) if no_reports else write_run_reports(folder, scenario)
-    if unwritten is not None:
-        raise unwritten
-    tell(f"results: {folder}")
-    tell_reports(reports)
-    if no_reports and (folder / WORKBOOK).exists():
-        tell(f"{folder / WORKBOOK} is of an earlier run; `tractionpower report {folder}` writes it again")
-    tell_beside(writer.beside)
-    raise typer.Exit(NOT_COMPLETED if is_stopped else _exit_code(sized, run, strict))
+    flagged = is_stopped or sized.outcome.flagged
+    code = exit_code(flagged=flagged, holds=_holds(sized, run), strict=strict)
+    call.leave(writer, code, no_reports=no_reports)
 
 
-def _size(
-    loaded: LoadedScenario, scenario: Scenario, place: tuple[str, Path], *, force: bool, goes_on: bool
-) -> tuple[Sized, RunWriter]:
-    """Rate the devices of a scenario; `place` is the name of the study and the folder of the results."""
-    from tractionpower.cli.console import progress_bar
-    from tractionpower.cli.messages import tell
-    from tractionpower.errors import InputError
-    from tractionpower.results.store import RunWriter
+def _size(call: StudyCall, *, force: bool, goes_on: bool) -> tuple[Sized, RunWriter]:
     from tractionpower.studies.ratings.study import SizingRun
     from tractionpower.studies.sizing_search.search import varied_items
 
-    name, folder = place
-    writer = RunWriter(folder, name, scenario.input_hash, force=force, scenario=scenario)
-    try:
-        sizing = SizingRun(scenario, writer, study=name)
+    with call.preparing(force=force) as writer:
+        sizing = SizingRun(call.scenario, writer, study=call.name)
         if goes_on:
-            varied_items(scenario)  # before the run: a search with nothing to vary is refused
-    except BaseException as error:
-        writer.discard()
-        if isinstance(error, InputError):
-            raise InputError(loaded.provenance.place(error.problems)) from None
-        raise
-    try:
-        with progress_bar("running the timetable") as update:
+            varied_items(call.scenario)  # before the run: a search with nothing to vary is refused
+    with keeping(writer, sizing.run, sizing.run.keep_unfinished):
+        with steps_bar("running the timetable") as update:
             sized = sizing.execute(update)
         writer.finish(sized.outcome.run, sized.outcome.key_figures, is_continued=goes_on)  # whatever becomes of a search
-    except KeyboardInterrupt:
-        kept = sizing.keep_unfinished(writer)
-        tell(f"interrupted after {sizing.run.done} of {sizing.run.steps} steps; what was computed is kept in {kept}")
-        tell(f"`tractionpower report {folder} --partial` makes reports of it")
-        raise
     return sized, writer
 
 
 def _searched(
-    scenario: Scenario, library: Library, run: dict[str, Any], writer: RunWriter, where: tuple[int | None, str | None]
+    call: StudyCall, run: dict[str, Any], writer: RunWriter, workers: int | None, scheduler: str | None
 ) -> tuple[dict[str, Any], bool]:
     """Search for the least equipment; return what ``run.json`` says then, and whether Ctrl-C came.
 
-    Runs of the search are kept beside the results until it comes to its end; `where` are workers and scheduler.
+    Runs of the search are kept beside the results until it comes to its end.
     """
-    import os
-
-    from tractionpower.cli.console import progress_bar
-    from tractionpower.cli.messages import tell
     from tractionpower.studies.ratings.study import with_search
     from tractionpower.studies.runner.store import CaseStore
     from tractionpower.studies.sizing_search.search import search
 
     tell("the ratings are written; Ctrl-C ends the search, and the same command goes on from its runs")
-    workers, scheduler = where
-    with progress_bar("searching") as update:
+    with steps_bar("searching", is_even=False) as update:
         found = search(
-            scenario, library, CaseStore(writer.beside_parts), workers=workers or os.cpu_count() or 1, scheduler=scheduler,
+            call.scenario, call.loaded.library, CaseStore(writer.beside_parts), workers=workers_or_cores(workers),
+            scheduler=scheduler,
             progress=lambda what, now: update(now.done, now.all, f"searching, {what}: {now.done} of {now.all} cases"),
         )  # fmt: skip
     said = with_search(run, found)
@@ -142,11 +99,7 @@ def _searched(
     return said, found.interrupted
 
 
-def _exit_code(sized: Sized, run: dict[str, Any], strict: bool) -> int:
-    from tractionpower.cli.messages import DONE, LIMIT_VIOLATED, NOT_COMPLETED
-
-    if sized.outcome.flagged:
-        return NOT_COMPLETED
+def _holds(sized: Sized, run: dict[str, Any]) -> bool:
+    """Return whether every device and every limit holds, and what a search has found too."""
     found = run["size"].get("search")
-    holds = sized.verdict != "fail" and all(verdict["met"] for verdict in run["verdicts"]) and (not found or found["holds"])
-    return LIMIT_VIOLATED if strict and not holds else DONE
+    return sized.verdict != "fail" and all(verdict["met"] for verdict in run["verdicts"]) and (not found or found["holds"])

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 import pyarrow as pa
@@ -20,6 +21,7 @@ from tractionpower.kernels.block import advance
 from tractionpower.kernels.block_tables import TRIGGERED, Buffers, State, new_buffers
 from tractionpower.kernels.train_tables import TRAIN_ROW
 from tractionpower.model.scenario import Scenario
+from tractionpower.results.store import RunWriter
 from tractionpower.results.versions import versions
 
 BLOCK_S = 0.25
@@ -175,6 +177,11 @@ class Run:
             **self.recorder.summary(),
         }
         return Outcome(run, self.recorder.key_figures(), self.warnings)
+
+    def keep_unfinished(self, writer: RunWriter) -> Path:
+        """Keep what an interrupted run has computed; return where it is."""
+        unfinished = self.outcome()
+        return writer.keep_unfinished(unfinished.run | {"status": "interrupted"}, unfinished.key_figures)
 
     def _coupling(self) -> dict[str, Any]:
         volts = coupling_voltage(self.scenario, self.compiled.supply)

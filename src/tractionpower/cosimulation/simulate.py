@@ -47,7 +47,6 @@ def simulate(
         outcome = run.execute(progress)
         writer.finish(outcome.run, outcome.key_figures)
     except KeyboardInterrupt:
-        unfinished = run.outcome()
-        writer.keep_unfinished(unfinished.run, unfinished.key_figures)
+        run.keep_unfinished(writer)
         raise
     return Results.open(folder)

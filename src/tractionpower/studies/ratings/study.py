@@ -94,11 +94,6 @@ class SizingRun:
         findings = Findings(ruling(used), *worst, useful, self._voltages.limit, self._ratings.recorder.loads.seconds)
         return Sized(self._judged(outcome, findings), used)
 
-    def keep_unfinished(self, writer: RunWriter) -> Path:
-        """Keep what an interrupted run has computed; return where it is."""
-        unfinished = self.run.outcome()
-        return writer.keep_unfinished(unfinished.run | {"status": "interrupted"}, unfinished.key_figures)
-
     def _judged(self, outcome: Outcome, found: Findings) -> Outcome:
         """Return the outcome of the run with what the study says."""
         # Verdicts of a run on zones count every train, however briefly it was there: here others take their place.
@@ -154,6 +149,6 @@ def size(
         outcome = sizing.execute(progress).outcome
         writer.finish(outcome.run, outcome.key_figures)
     except KeyboardInterrupt:
-        sizing.keep_unfinished(writer)
+        sizing.run.keep_unfinished(writer)
         raise
     return Results.open(folder)
