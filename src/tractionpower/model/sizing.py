@@ -63,7 +63,9 @@ class SizingSearch(Declaration):
     contact_lines: tuple[Identifier, ...] = Field(
         default=(), description="Types of contact line that may be built, in the order of their cost; none: as it is."
     )
-    most_runs: Count = Field(default=40, ge=1, description="Most rounds of the search.")
+    most_runs: Count = Field(
+        default=120, ge=1, description="Most rounds of the search; a round runs all cases of a design, or some of them."
+    )
     unit_points: Real = Field(default=10.0, ge=0, description="Cost of a rectifier unit, in points.")
     cable_points: Real = Field(default=0.5, ge=0, description="Cost of a cable of a feeder, in points.")
     contact_line_points: Real = Field(default=1.0, ge=0, description="Cost of each kilometre and step of contact line.")

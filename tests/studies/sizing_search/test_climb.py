@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from tractionpower.studies.sizing_search.climb import Climb
+from tractionpower.studies.sizing_search.climb import Climb, StoppedError
 from tractionpower.studies.sizing_search.items import Item, Rung
 from tractionpower.studies.sizing_search.shortfalls import CaseFacts, Shortfall
 
@@ -95,3 +95,57 @@ def test_a_case_that_was_not_looked_at_counts_in_the_end():
 def test_it_ends_when_nothing_more_may_be_tried(most):
     climb, _ = climbed({"A": 1, "B": 6}, {"base": {"A": 2.5, "B": 0.5}, "x": {"A": 0.2}}, most=most)
     assert climb.evaluator.runs <= most + 4
+
+
+class Neighbours:
+    """A and B share a load of four units, and a case that is not looked at first needs three of B where C has one."""
+
+    def __init__(self, stop_after=10**9):
+        self.calls, self.stop_after = 0, stop_after
+
+    spent = False
+
+    def helps(self, shortfall):
+        return ["units of B"]
+
+    def evaluate(self, design, only=None):
+        self.calls += 1
+        if self.calls > self.stop_after:
+            raise StoppedError
+        a, b, c = (design.get(f"units of {name}", 1) + 1 for name in "ABC")
+        short = {"base": a + b < 4 or b < 2, "hidden": c < 2 and b < 3}
+        used = {"base": {"A unit": 90.0, "B unit": 95.0, "C unit": 91.0}, "hidden": {"A unit": 1.0, "B unit": 1.0, "C unit": 1.0}}
+        found = {}
+        for case, missed in short.items():
+            items = (Shortfall(case, "device", "B unit", "", math.nan, 0.5, "x"),) if missed else ()
+            if only is None or case in only:
+                found[case] = CaseFacts(items, used[case])
+        return found
+
+
+def neighbours(**more):
+    items = {item.name: item for item in (units(name, 2, most=4) for name in "ABC")}
+    return Climb(items, Neighbours(**more)), items
+
+
+def test_what_was_refused_is_tried_again_when_more_was_built():
+    climb, items = neighbours()
+    climb.run()
+    assert climb.verified
+    assert not climb.shortfalls
+    for name, item in items.items():
+        rung = climb.design.get(name, item.declared)
+        if rung:
+            facts = Neighbours().evaluate({**climb.design, name: rung - 1})
+            assert any(found.shortfalls for found in facts.values()), name
+
+
+@pytest.mark.parametrize("calls", range(12))
+def test_what_was_stopped_is_no_success(calls):
+    climb, _ = neighbours(stop_after=calls)
+    climb.run()
+    whole, _ = neighbours()
+    whole.run()
+    if calls < whole.evaluator.calls:
+        assert not climb.verified
+        assert [step.item for step in climb.steps] == [step.item for step in whole.steps[: len(climb.steps)]]

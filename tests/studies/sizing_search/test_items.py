@@ -14,7 +14,15 @@ FEEDER = {"at": "A", "track": "1", "side": "high_km", "cable": "YAKY-500", "leng
 def plants():
     by_unit = {key: value for key, value in STATION.items() if key != "internal_resistance_ohm"}
     return [
-        {"id": "A", "km": 0.0, **by_unit, "unit_resistance_ohm": 0.2, "grid_resistance_ohm": 0.02, "units": 2},
+        {
+            "id": "A",
+            "km": 0.0,
+            **by_unit,
+            "unit_resistance_ohm": 0.2,
+            "grid_resistance_ohm": 0.02,
+            "units": 2,
+            "dissipative_resistance_ohm": 0.02,
+        },
         station("B", 20.0, units=2, grid_resistance_ohm=0.02, dissipative_resistance_ohm=0.01),
         station("M", 12.0, state="bypassed"),
     ]
@@ -45,8 +53,7 @@ def test_other_units_share_what_is_not_of_the_grid_and_keep_the_no_load_voltage(
     assert changed.units == units
     assert internal_resistance(changed) == pytest.approx(one / units + 0.02, rel=1e-12)
     assert no_load_voltage(changed) == 3600.0
-    if name == "B":
-        assert dissipative_resistance(changed) == pytest.approx(0.02 / units, rel=1e-12)
+    assert dissipative_resistance(changed) == pytest.approx(0.02 / units, rel=1e-12)
 
 
 def test_what_is_declared_is_no_change_and_costs_what_it_is():

@@ -20,11 +20,21 @@ BETTER = 1e-6
 """A step that lessens what is missed by no more than this does not help."""
 
 
+class StoppedError(Exception):
+    """The search was stopped while cases were run, so that nothing can be said of the design."""
+
+
 class Evaluator(Protocol):
     """Runs designs."""
 
     def evaluate(self, design: Design, only: Collection[str] | None = None) -> dict[str, CaseFacts]:
-        """Return the facts of all cases, or of some, by name; of cases that a design does not have nothing."""
+        """Return the facts of all cases, or of some, by name; of cases that a design does not have nothing.
+
+        Raises
+        ------
+        StoppedError
+            If not all of them were run.
+        """
 
     def helps(self, shortfall: Shortfall) -> Sequence[str]:
         """Return the items of which more may lessen a shortfall, the nearest first."""
@@ -77,10 +87,16 @@ class Climb:
     verified: bool = False
     stuck: tuple[Shortfall, ...] = ()
     _deciding: set[str] = field(default_factory=set)
-    _kept: set[str] = field(default_factory=set)  # items of which less has been refused
+    _kept: set[str] = field(default_factory=set)  # items of which less has been refused since something was built
 
     def run(self) -> None:
         """Search until the design holds and nothing can be saved, or nothing more may be tried."""
+        try:
+            self._search()
+        except StoppedError:
+            self.verified = False
+
+    def _search(self) -> None:
         self._verify()
         while not self.evaluator.spent and not self.stuck:
             if self.shortfalls:
@@ -89,6 +105,8 @@ class Climb:
                 if self.verified:
                     return
                 self._verify()
+        if not self.verified:  # what is told of a design that was left in the middle is told of all cases, too
+            self._verify()
 
     @property
     def shortfalls(self) -> tuple[Shortfall, ...]:
@@ -117,6 +135,7 @@ class Climb:
             best = max(self._trials(shortfall), key=lambda trial: trial[0], default=None)
             if best is not None and best[0] > 0.0:
                 self._take(best[1], best[2], shortfall.words)
+                self._kept.clear()  # with more here, less may do elsewhere
                 return
         self.stuck = self.shortfalls
 
@@ -129,8 +148,8 @@ class Climb:
             rung = self._next_rung(item, shortfall)
             if rung is None or self.evaluator.spent:
                 continue
-            after = self.evaluator.evaluate({**self.design, name: rung}, (case,)).get(case)
-            saved = before - (0.0 if after is None else after.excess)
+            facts = self.evaluator.evaluate({**self.design, name: rung}, (case,))
+            saved = before - facts[case].excess if case in facts else 0.0
             cost = max(item.rungs[rung].cost - item.at(self.design).cost, BETTER)
             if saved > BETTER:
                 yield saved / cost, name, rung
@@ -146,11 +165,16 @@ class Climb:
         return next((k for k in range(now + 1, len(item.rungs)) if item.rungs[k].cost >= needed - BETTER), len(item.rungs) - 1)
 
     def _take(self, name: str, rung: int, why: str) -> None:
+        """Go over to another rung of an item and run the deciding cases."""
+        facts = self.evaluator.evaluate({**self.design, name: rung}, self._deciding)
+        self._adopt(name, rung, why)
+        self.facts |= facts
+
+    def _adopt(self, name: str, rung: int, why: str) -> None:
         item = self.items[name]
         self.steps.append(Step(name, item.at(self.design).words, item.rungs[rung].words, why))
         self.design[name] = rung
         self.verified = False
-        self.facts |= self.evaluator.evaluate(self.design, self._deciding)
 
     # -- less ----------------------------------------------------------------------------------------------------
 
@@ -164,12 +188,12 @@ class Climb:
             less = {**self.design, item.name: rung}
             cases = {*self._deciding, *self._worst_cases(item)}
             facts = self.evaluator.evaluate(less, cases)
+            self._deciding |= {case for case, found in facts.items() if found.shortfalls or self._is_near(found)}
             if any(found.shortfalls for found in facts.values()):
                 self._kept.add(item.name)
-                self._deciding |= {case for case, found in facts.items() if found.shortfalls}
                 continue
-            self._deciding |= cases
-            self._take(item.name, rung, "all limits are kept with less")
+            self._adopt(item.name, rung, "all limits are kept with less")
+            self.facts |= facts
             return True
         return False
 

@@ -102,10 +102,11 @@ def _unit_changes(station: Substation, units: int) -> tuple[str, ...]:
     path = f"supply.substations[{station.id}]"
     changes = [f"{path}.units={units}"]
     if station.unit_resistance_ohm is None:
-        shared = (station.plant_resistance_ohm - station.grid_resistance_ohm) * station.units / units
+        part = station.units / units
+        shared = (station.plant_resistance_ohm - station.grid_resistance_ohm) * part
         changes.append(f"{path}.internal_resistance_ohm={station.grid_resistance_ohm + shared:.12g}")
-    if station.dissipative_resistance_ohm is not None:
-        changes.append(f"{path}.dissipative_resistance_ohm={station.dissipative_resistance_ohm * station.units / units:.12g}")
+        if station.dissipative_resistance_ohm is not None:
+            changes.append(f"{path}.dissipative_resistance_ohm={station.dissipative_resistance_ohm * part:.12g}")
     return tuple(changes)
 
 

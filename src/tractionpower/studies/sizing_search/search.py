@@ -107,8 +107,8 @@ def search(
     More is built where a limit is missed, by the step that does most for its cost; then less, where all limits are kept with
     less. The ratings of all devices and the lowest voltage hold in every case (normal operation, and with
     ``sizing.search.outages`` every single outage), the mean useful voltage in normal operation. The design that is returned
-    is run in all cases before it is called verified. A search of this kind finds a design of which no single item can be
-    lessened; another combination may be cheaper.
+    is run in all cases before it is called verified. Of that design no single item could be lessened by one rung; another
+    combination may be cheaper.
 
     Parameters
     ----------

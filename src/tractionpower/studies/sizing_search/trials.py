@@ -14,6 +14,7 @@ from tractionpower.studies.contingency.outages import outages
 from tractionpower.studies.runner.case import Case, CasesProgress
 from tractionpower.studies.runner.run import run_cases
 from tractionpower.studies.runner.store import CaseStore
+from tractionpower.studies.sizing_search.climb import StoppedError
 from tractionpower.studies.sizing_search.items import Design, Item, changes_of
 from tractionpower.studies.sizing_search.shortfalls import Asked, CaseFacts, Shortfall
 from tractionpower.supply.devices import Device, devices_of
@@ -62,7 +63,13 @@ class Trials:
         return self.interrupted or self.rounds >= self._scenario.sizing.search.most_runs
 
     def evaluate(self, design: Design, only: Collection[str] | None = None) -> dict[str, CaseFacts]:
-        """Return the facts of all cases, or of some, by name; of cases that a design does not have nothing."""
+        """Return the facts of all cases, or of some, by name; of cases that a design does not have nothing.
+
+        Raises
+        ------
+        StoppedError
+            If Ctrl-C came before all of them were run.
+        """
         changes = changes_of(self._items, design)
         cases = self._cases(changes, only)
         told = self._progress
@@ -72,7 +79,9 @@ class Trials:
             progress=None if told is None else lambda how: told(f"design {self.rounds}", how),
         )  # fmt: skip
         self.runs += run.run
-        self.interrupted = self.interrupted or run.interrupted
+        if run.interrupted:
+            self.interrupted = True
+            raise StoppedError
         devices: dict[str, list[dict[str, object]]] = {}
         for table in run.tables("case_devices"):
             for row in table.select(["case", "device", "utilisation_percent"]).to_pylist():
