@@ -59,8 +59,10 @@ def test_own_current_and_class_win_and_the_least_sure_value_gives_the_status():
     )
 
 
-def test_a_substation_bears_what_all_of_its_units_do():
-    assert of_unit(PLANT, unit="PD-17", units=3, units_in_service=1).rated_a == 3 * 1700.0
+def test_a_substation_bears_what_its_units_in_service_do():
+    assert of_unit(PLANT, unit="PD-17", units=3).rated_a == 3 * 1700.0
+    assert of_unit(PLANT, unit="PD-17", units=3, units_in_service=1).rated_a == 1700.0
+    assert math.isnan(of_unit(PLANT, unit="PD-17", units=3, units_in_service=0).rated_a)
 
 
 def test_without_a_class_no_overload_is_borne():

@@ -84,7 +84,7 @@ class _Raters:
         self.of_lines: dict[ContactLine, Rating] = {}
         self.by_kind: dict[str, Callable[[Device], Rating]] = {
             "unit": lambda device: self._unit(device, 1),
-            "substation": lambda device: self._unit(device, self.substations[device.station].units),
+            "substation": self._substation,
             "feeder": self._feeder,
             "cabin_feeder": self._feeder,
             "return_feeder": self._feeder,
@@ -96,6 +96,12 @@ class _Raters:
         rate = self.by_kind.get(device.kind)
         return no_rating(device.id) if rate is None else replace(rate(device), device_id=device.id)
 
+    def _substation(self, device: Device) -> Rating:
+        """Return what the units that are in service from the start bear together."""
+        station = self.substations[device.station]
+        units = station.units if station.units_in_service is None else station.units_in_service
+        return self._unit(device, units) if units else no_rating(device.id, "no unit is in service")
+
     def _unit(self, device: Device, units: int) -> Rating:
         station = self.substations[device.station]
         kind = find_unit(self.scenario.rectifier_units, station.unit) if station.unit is not None else None
@@ -105,7 +111,9 @@ class _Raters:
         if rated is None:
             return no_rating(device.id, "no rating given: neither rated_current_a nor unit")
         name, windows, more, status = self._duty(station)
-        source = f"{units} x {rated:g} A, all units in service; {told}" if device.kind == "substation" else told
+        source = (
+            f"{units} x {rated:g} A, {units} of {station.units} units in service; {told}" if device.kind == "substation" else told
+        )
         return Rating(device.id, units * rated, name, windows, math.nan, _least_sure(known, status), f"{source}; {more}")
 
     def _duty(self, station: Substation) -> tuple[str, tuple[tuple[float, float], ...], str, str]:
