@@ -6,7 +6,8 @@ from tractionpower.cli import main
 from tractionpower.cli.messages import exit_code_of, has_errors, summary
 from tractionpower.errors import InputError, Problem
 
-SCHEMAS = ["study", "line", "supply", "timetable", "train", "vehicle", "limits", "conductors", "duty_classes", "rectifier_units"]
+SCHEMAS = ["study", "line", "supply", "timetable", "train", "vehicle", "limits", "conductors", "duty_classes"]
+SCHEMAS += ["rectifier_units", "measured"]
 
 
 @pytest.fixture

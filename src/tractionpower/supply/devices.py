@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.kernels.block_tables import Buffers
+from tractionpower.supply.characteristics import dissipative_resistance
 from tractionpower.supply.compile import SupplyTables
 from tractionpower.supply.gauges import Section
 
@@ -123,6 +124,23 @@ def sums_of_columns(values: Floats, groups: Sequence[Sequence[int]]) -> Floats:
         for column in group:
             sums[:, number] += values[:, column]
     return sums
+
+
+def grid_power(rows: Buffers, supply: SupplyTables) -> Floats:
+    """Return what substations take from the feeding grid [W], shape (steps, substations); 0 without a busbar.
+
+    U I at the busbar and, where it is known, the heat of transformers and rectifiers in the present states.
+    """
+    heat_ohm = np.array([dissipative_resistance(station) or 0.0 for station in supply.substations])
+    return np.nan_to_num(rows.source_v * rows.source_a + heat_ohm * rows.source_a**2)
+
+
+def supply_points(supply: SupplyTables) -> dict[str, list[int]]:
+    """Return the supply points, sorted, with the numbers of their substations: those of one are one customer."""
+    points: dict[str, list[int]] = {}
+    for k, station in enumerate(supply.substations):
+        points.setdefault(station.supply_point or station.id, []).append(k)
+    return dict(sorted(points.items()))
 
 
 def units_in_service(supply: SupplyTables) -> Floats:

@@ -26,9 +26,8 @@ def ratings_by_id(scenario: Scenario) -> dict[str, Rating]:
 
 def device_uses(scenario: Scenario, recorder: DeviceRecorder) -> tuple[Use, ...]:
     """Return the use of each device over the window that rules it, in the order of the devices."""
-    from_s = scenario.clock.start + (scenario.clock.warm_up or 0.0)
-    ratings = ratings_of(scenario, recorder.devices)
-    return ruling(uses(recorder.devices, ratings, recorder.loads, from_s, scenario.sizing.utilisation_percent))
+    allowed_percent = scenario.sizing.utilisation_percent
+    return ruling(uses(recorder.devices, recorder.ratings, recorder.loads, recorder.from_s, allowed_percent))
 
 
 def device_figures(found: tuple[Use, ...]) -> dict[str, Any]:

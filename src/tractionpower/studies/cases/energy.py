@@ -9,8 +9,8 @@ from tractionpower.kernels.block_tables import Buffers
 from tractionpower.results.extremes import add_up
 from tractionpower.results.ledgers import ElectricLedger
 from tractionpower.results.windows import ClockDemand
-from tractionpower.supply.characteristics import dissipative_resistance
 from tractionpower.supply.compile import SupplyTables
+from tractionpower.supply.devices import grid_power, sums_of_columns, supply_points
 
 Floats = NDArray[np.float64]
 
@@ -33,10 +33,8 @@ class EnergyWatch:
 
     def __init__(self, supply: SupplyTables, step_s: float) -> None:
         self._step_s = step_s
-        points = [station.supply_point or station.id for station in supply.substations]
-        names = sorted(set(points))
-        self._at_point = np.array([[point == name for name in names] for point in points], float).reshape(len(points), len(names))
-        self._demand = ClockDemand(len(names), step_s)
+        self._stations = list(supply_points(supply).values())
+        self._demand = ClockDemand(len(self._stations), step_s)
         self._busbar_j = np.zeros(1)
         self.ledger = ElectricLedger()
 
@@ -45,8 +43,7 @@ class EnergyWatch:
         self.ledger.add(rows.steps, self._step_s)
         power = np.nan_to_num(rows.source_v) * rows.source_a
         self._busbar_j = add_up(self._busbar_j, power.sum(axis=1, keepdims=True) * self._step_s)
-        heat_ohm = np.array([dissipative_resistance(station) or 0.0 for station in supply.substations])
-        self._demand.add(time_s, (power + heat_ohm * rows.source_a**2) @ self._at_point)
+        self._demand.add(time_s, sums_of_columns(grid_power(rows, supply), self._stations))
 
     @property
     def busbar_kwh(self) -> float:

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from tractionpower.kernels.block_tables import Buffers
 from tractionpower.model.scenario import Scenario
 from tractionpower.studies.ratings.counted import counted, counts_from
-from tractionpower.supply.characteristics import dissipative_resistance
 from tractionpower.supply.compile import SupplyTables
-from tractionpower.supply.devices import sums_of_columns
+from tractionpower.supply.devices import grid_power, sums_of_columns, supply_points
 
 Floats = NDArray[np.float64]
 
@@ -49,13 +48,10 @@ class DemandWatch:
     def __init__(self, scenario: Scenario, supply: SupplyTables) -> None:
         clock = scenario.clock
         self._from_s, self._step_s = counts_from(clock), clock.step_s
-        owners = [station.supply_point or station.id for station in supply.substations]
-        self.points = tuple(sorted(set(owners)))
-        self._stations = [[k for k, owner in enumerate(owners) if owner == point] for point in self.points]
-        given = [(owner, s.contract_power_kw) for owner, s in zip(owners, supply.substations, strict=True)]
-        self.contract_kw = [
-            next((power for owner, power in given if owner == point and power is not None), math.nan) for point in self.points
-        ]
+        points = supply_points(supply)
+        self.points, self._stations = tuple(points), list(points.values())
+        given = [[supply.substations[k].contract_power_kw for k in stations] for stations in self._stations]
+        self.contract_kw = [next((power for power in powers if power is not None), math.nan) for powers in given]
         self._first = math.floor(self._from_s / PERIOD_S)
         periods = max(0, math.ceil(clock.end / PERIOD_S) - self._first)
         self._energy_j = np.zeros((periods + 1, len(self.points)))  # one more: the last step may reach beyond the clock
@@ -64,9 +60,7 @@ class DemandWatch:
     def __call__(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
         """Take the rows of some steps."""
         time_s, rows = counted(self._from_s, time_s, rows)
-        heat_ohm = np.array([dissipative_resistance(station) or 0.0 for station in supply.substations])
-        own = np.nan_to_num(rows.source_v * rows.source_a + heat_ohm * rows.source_a**2)  # none without a busbar
-        watts = sums_of_columns(own, self._stations)
+        watts = sums_of_columns(grid_power(rows, supply), self._stations)
         at = np.floor(time_s / PERIOD_S + _NEAR * self._step_s / PERIOD_S).astype(np.int64)
         here_s = np.minimum((at + 1) * PERIOD_S - time_s, self._step_s)  # of a step over a boundary the part before it
         for number, seconds in ((at - self._first, here_s), (at - self._first + 1, self._step_s - here_s)):
