@@ -12,8 +12,14 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.studies.cases.judgement import Check, checks_of
 from tractionpower.studies.runner.case import COMPLETE
 
+ALWAYS = ("lowest_voltage_v", "breaker_share_percent", "contract_share_percent")
+"""Figures whose limits are asked of every case."""
+
 NORMALLY = ("useful_zone_v", "useful_train_v", "worst_late_s")
 """Figures whose limits are asked of normal operation."""
+
+MENDED_BY_VOLTAGE = frozenset(("low voltage", "useful voltage", "late trains"))
+"""Words of limits that more voltage helps to keep; neither contracts nor settings of breakers are among them."""
 
 NOT_RUN = 10.0
 """What a case that does not complete misses: more than any other."""
@@ -62,16 +68,16 @@ class CaseFacts:
 
 
 class Asked:
-    """What a scenario asks of every case, of what more equipment can mend.
+    """What a scenario asks of its cases.
 
-    Ratings and the lowest voltage hold in every case; the mean useful voltage and the timetable in the base case at the normal
+    Ratings, settings of breakers, contracts and the lowest voltage hold in every case; the mean useful voltage and the timetable in the base case at the normal
     grid voltage, since standards and timetables ask them of normal operation.
     """
 
     def __init__(self, scenario: Scenario) -> None:
         self.allowed_percent = scenario.sizing.utilisation_percent
         checks = checks_of(scenario)
-        self._always = [check for check in checks if check.figure == "lowest_voltage_v"]
+        self._always = [check for check in checks if check.figure in ALWAYS]
         self._normally = [check for check in checks if check.figure in NORMALLY]
 
     def facts(self, row: Mapping[str, Any], devices: Iterable[Mapping[str, Any]]) -> CaseFacts:
@@ -95,7 +101,7 @@ class Asked:
 
 
 def _miss(check: Check, row: Mapping[str, Any]) -> Shortfall:
-    """Return by how much a case misses the limit of a figure; what it needs is more voltage where that is lowest."""
+    """Return by how much a case misses the limit of a figure, and where its voltage is lowest."""
     verdict = check.verdict(row)
     excess = abs(verdict["value"] - check.value) / (check.value or 1.0)
     words = f"{check.name} {verdict['value']:.0f} {check.unit} ({verdict['place']}) against {check.value:g} {check.unit}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from tractionpower.cosimulation.prepared import prepare
@@ -16,7 +16,7 @@ from tractionpower.studies.runner.run import run_cases
 from tractionpower.studies.runner.store import CaseStore
 from tractionpower.studies.sizing_search.climb import StoppedError
 from tractionpower.studies.sizing_search.items import Design, Item, changes_of
-from tractionpower.studies.sizing_search.shortfalls import Asked, CaseFacts, Shortfall
+from tractionpower.studies.sizing_search.shortfalls import MENDED_BY_VOLTAGE, Asked, CaseFacts, Shortfall
 from tractionpower.supply.devices import Device, devices_of
 
 Told = Callable[[str, CasesProgress], None]
@@ -100,7 +100,11 @@ class Trials:
     def helps(self, shortfall: Shortfall) -> Sequence[str]:
         """Return the items of which more may lessen a shortfall, the nearest first."""
         device = self._devices.get(shortfall.subject) if shortfall.what == "device" else None
-        names = self._of_device(device) if device is not None else self._of_place(shortfall.track, shortfall.km)
+        names: Iterable[str] = ()
+        if device is not None:
+            names = self._of_device(device)
+        elif shortfall.what in MENDED_BY_VOLTAGE:
+            names = self._of_place(shortfall.track, shortfall.km)
         return [name for name in dict.fromkeys(names) if name in self._items]
 
     def _of_device(self, device: Device) -> Iterator[str]:
