@@ -8,11 +8,12 @@ from fake_results import make_case
 from fake_sizing import sized
 
 from tractionpower.reporting import ratings_figures as figures
-from tractionpower.reporting.device_words import supply_points_along_line, window_words, zones_along_line
+from tractionpower.reporting.device_words import supply_points_along_line, zones_along_line
 from tractionpower.reporting.run_data import RunData
 from tractionpower.reporting.style import GREEN, ORANGE, VERMILION
 from tractionpower.reporting.useful_figures import colour_classes, text_colour, useful_voltage_zones
 from tractionpower.results.results import Results
+from tractionpower.studies.ratings.words import window_words
 
 
 def data_of(**case):

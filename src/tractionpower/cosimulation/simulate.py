@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
-from tractionpower.cosimulation.run import Progress, Run
+from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter, RunWriter
+
+Prepared = tuple[Callable[[Progress | None], Outcome], Callable[[RunWriter], Path]]
+"""How to run to the end, and how to keep what is unfinished."""
 
 
 def simulate(
@@ -33,20 +37,46 @@ def simulate(
     OutputError
         If the results cannot be written.
     """
+
+    def prepare(writer: Writer) -> Prepared:
+        run = Run(scenario, writer, scenario.name)
+        return run.execute, run.keep_unfinished
+
+    return computed(scenario, folder, prepare, force=force, progress=progress)
+
+
+def computed(
+    scenario: Scenario,
+    folder: str | Path | None,
+    prepare: Callable[[Writer], Prepared],
+    *,
+    force: bool = False,
+    progress: Progress | None = None,
+) -> Results:
+    """Compute something of a scenario and return its results; parameters not told here are those of `simulate`.
+
+    A folder is left as it was if preparing fails; what is computed when Ctrl-C comes is kept.
+
+    Parameters
+    ----------
+    prepare
+        Called with what takes the tables; makes the runs ready.
+    """
     if folder is None:
         memory = MemoryWriter()
-        outcome = Run(scenario, memory, scenario.name).execute(progress)
+        execute, _ = prepare(memory)
+        outcome = execute(progress)
         return Results(outcome.run, outcome.key_figures, memory.tables(), scenario)
     writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, force=force, scenario=scenario)
     try:
-        run = Run(scenario, writer, scenario.name)
+        execute, keep_unfinished = prepare(writer)
     except BaseException:
         writer.discard()
         raise
     try:
-        outcome = run.execute(progress)
+        outcome = execute(progress)
         writer.finish(outcome.run, outcome.key_figures)
     except KeyboardInterrupt:
-        run.keep_unfinished(writer)
+        keep_unfinished(writer)
         raise
-    return Results.open(folder)
+    return Results.open(Path(folder))

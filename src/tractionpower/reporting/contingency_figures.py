@@ -15,11 +15,11 @@ from matplotlib.lines import Line2D
 
 from tractionpower.model.limits import common_limits
 from tractionpower.reporting.axes import draw_limits, mark_devices, panels_of_lines, voltage_range, with_margin
-from tractionpower.reporting.device_words import window_words
 from tractionpower.reporting.labels import LETTER, row_name
 from tractionpower.reporting.outages import COMPUTED, Outages
 from tractionpower.reporting.ratings_figures import BARE, TIGHT_PERCENT, margin_colour
 from tractionpower.reporting.style import BLUE, GREEN, GREY, INK, ORANGE, PALE, SKY, STYLE, VERMILION, new_figure
+from tractionpower.studies.ratings.words import window_words
 
 WIDTH = 11.7
 PORTRAIT = 8.3

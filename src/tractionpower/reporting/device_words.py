@@ -1,4 +1,4 @@
-"""Windows and kinds of devices in words, and zones and supply points in their order along the line."""
+"""Kinds of devices in words, and zones and supply points in their order along the line."""
 
 from __future__ import annotations
 
@@ -18,20 +18,6 @@ KINDS = {
     "supply_point": "Supply points",
 }
 """Kinds of devices in words, in the order of sheets and figures."""
-
-
-def window_words(seconds: float) -> str:
-    """Return the length of a window in words; 0 is the whole run.
-
-    >>> window_words(900.0), window_words(0.0), window_words(7200.0), window_words(10.0)
-    ('15 min', 'whole run', '2 h', '10 s')
-    """
-    if not seconds > 0.0:
-        return "whole run"
-    for unit, size in (("h", 3600.0), ("min", 60.0)):
-        if seconds >= size and seconds % size == 0.0:
-            return f"{seconds / size:g} {unit}"
-    return f"{seconds:g} s"
 
 
 def kind_order(kind: str) -> int:

@@ -16,11 +16,11 @@ from tractionpower.reporting.device_words import (
     KINDS,
     kind_order,
     supply_points_along_line,
-    window_words,
     zones_along_line,
 )
 from tractionpower.reporting.run_data import RunData
 from tractionpower.reporting.style import BLUE, COLOURS, DASHES, GREEN, GREY, INK, ORANGE, SKY, STYLE, VERMILION, new_figure
+from tractionpower.studies.ratings.words import window_words
 
 WIDTH = 8.3
 """Width of the figures that stand upright on A4 [inches]."""

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from tractionpower.reporting.device_words import KINDS, kind_order, window_words
+from tractionpower.reporting.device_words import KINDS, kind_order
 from tractionpower.reporting.outages import Outages
 from tractionpower.reporting.places import told
 from tractionpower.reporting.workbook.page import Block, Book, Column
 from tractionpower.reporting.workbook.plots import COLOURS, GREY, Line, draw, scatter
 from tractionpower.reporting.workbook.ratings import HOLDS, UNRATED, banner, colour_use, colour_word
+from tractionpower.studies.ratings.words import window_words
 
 BASE, WORST, KM = "nothing out [V]", "worst of all cases [V]", "place [km]"
 LIMIT = "U_min2 [V]"

@@ -8,11 +8,12 @@ from typing import Any
 import pandas as pd
 from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
-from tractionpower.reporting.device_words import KINDS, kind_order, window_words
+from tractionpower.reporting.device_words import KINDS, kind_order
 from tractionpower.reporting.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.workbook.cells import AMBER_FILL, GREEN_FILL, PLAIN_FILL, RED_FILL, fill, put
 from tractionpower.reporting.workbook.facts import KNOWN_AS, Facts
 from tractionpower.reporting.workbook.page import LINE_POINTS, Block, Book, Column, Page
+from tractionpower.studies.ratings.words import window_words
 
 USE, HOLDS = "utilisation [%]", "holds"
 UNRATED = "not rated"

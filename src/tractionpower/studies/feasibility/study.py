@@ -13,6 +13,7 @@ import pyarrow as pa
 from tractionpower.cosimulation.lateness import STUCK_S, lateness_of
 from tractionpower.cosimulation.quiet import run_quietly
 from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
+from tractionpower.cosimulation.simulate import Prepared, computed
 from tractionpower.errors import Problem, UsageError
 from tractionpower.kernels.train_tables import OUTSIDE
 from tractionpower.model.scenario import Output, Scenario
@@ -20,7 +21,7 @@ from tractionpower.movement.compile import Movement
 from tractionpower.movement.journey import calls_of
 from tractionpower.movement.turns import Link, links_of
 from tractionpower.results.results import Results
-from tractionpower.results.store import MemoryWriter, RunWriter
+from tractionpower.results.store import RunWriter
 from tractionpower.studies.feasibility.alone import AloneTimes, run_all_alone
 from tractionpower.studies.feasibility.areas import Areas
 from tractionpower.studies.feasibility.chain import Before, Chain, TrainFacts, chain_of
@@ -264,21 +265,9 @@ def feasibility(
     OutputError
         If the results cannot be written.
     """
-    how: dict[str, Any] = {"study": scenario.name, "tolerance_s": tolerance_s}
-    if folder is None:
-        memory = MemoryWriter()
-        outcome = judge(scenario, memory, progress=progress, **how).outcome
-        return Results(outcome.run, outcome.key_figures, memory.tables(), scenario)
-    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, force=force, scenario=scenario)
-    try:
-        judging = Judging(scenario, writer, **how)
-    except BaseException:
-        writer.discard()
-        raise
-    try:
-        outcome = judging.execute(progress).outcome
-        writer.finish(outcome.run, outcome.key_figures)
-    except KeyboardInterrupt:
-        judging.keep_unfinished(writer)
-        raise
-    return Results.open(folder)
+
+    def prepare(writer: Writer) -> Prepared:
+        judging = Judging(scenario, writer, study=scenario.name, tolerance_s=tolerance_s)
+        return lambda told: judging.execute(told).outcome, judging.keep_unfinished
+
+    return computed(scenario, folder, prepare, force=force, progress=progress)

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
+from tractionpower.cosimulation.simulate import Prepared, computed
 from tractionpower.cosimulation.useful_voltage_recorder import UsefulVoltageRecorder
 from tractionpower.errors import Problem
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.results import Results
-from tractionpower.results.store import MemoryWriter, RunWriter
 from tractionpower.studies.ratings.findings import Findings, Row, size_notes, worst_breakers, worst_demand
 from tractionpower.studies.ratings.use import Use, ruling
 from tractionpower.studies.ratings.useful import lowest_useful
@@ -135,20 +135,9 @@ def size(
     OutputError
         If the results cannot be written.
     """
-    if folder is None:
-        memory = MemoryWriter()
-        outcome = SizingRun(scenario, memory, study=scenario.name).execute(progress).outcome
-        return Results(outcome.run, outcome.key_figures, memory.tables(), scenario)
-    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, force=force, scenario=scenario)
-    try:
+
+    def prepare(writer: Writer) -> Prepared:
         sizing = SizingRun(scenario, writer, study=scenario.name)
-    except BaseException:
-        writer.discard()
-        raise
-    try:
-        outcome = sizing.execute(progress).outcome
-        writer.finish(outcome.run, outcome.key_figures)
-    except KeyboardInterrupt:
-        sizing.run.keep_unfinished(writer)
-        raise
-    return Results.open(folder)
+        return lambda told: sizing.execute(told).outcome, sizing.run.keep_unfinished
+
+    return computed(scenario, folder, prepare, force=force, progress=progress)
