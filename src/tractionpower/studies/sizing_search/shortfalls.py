@@ -70,8 +70,8 @@ class CaseFacts:
 class Asked:
     """What a scenario asks of its cases.
 
-    Ratings, settings of breakers, contracts and the lowest voltage hold in every case; the mean useful voltage and the timetable in the base case at the normal
-    grid voltage, since standards and timetables ask them of normal operation.
+    Ratings, settings of breakers, contracts and the lowest voltage hold in every case; the mean useful voltage and the
+    timetable in the base case at the normal grid voltage, since standards and timetables ask them of normal operation.
     """
 
     def __init__(self, scenario: Scenario) -> None:
