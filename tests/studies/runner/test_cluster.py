@@ -3,8 +3,10 @@
 import json
 import os
 import re
+import socket
 import subprocess
 import sys
+import threading
 import time
 from contextlib import contextmanager
 from functools import partial
@@ -18,7 +20,7 @@ from tractionpower.errors import UsageError
 from tractionpower.studies.runner.run import run_cases
 from tractionpower.studies.runner.store import CaseStore
 
-pytest.importorskip("distributed")
+distributed = pytest.importorskip("distributed")
 
 BASE = make_scenario(load("depot"))
 SUPPORT = Path(__file__).parents[2] / "support"
@@ -99,6 +101,37 @@ def test_a_scheduler_that_does_not_answer_is_told(address, monkeypatch, tmp_path
         run_cases(BASE, LIBRARY, loads_of(2), run_load, store, scheduler=address)
     assert time.monotonic() - started < 5.0
     assert len(list(store.keys())) == 1, "what is kept stays"
+
+
+@pytest.mark.parametrize("said", [b"", b"HTTP/1.0 400 Bad request\r\n\r\n" + 99 * b"x"], ids=["silent", "other protocol"])
+def test_what_answers_but_is_no_scheduler_is_told(said, monkeypatch):
+    monkeypatch.setattr("tractionpower.studies.runner.cluster.ANSWER_S", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+
+        def serve():
+            connection, _ = server.accept()
+            connection.sendall(said)
+            with connection:  # held until the other end leaves
+                while connection.recv(1024):
+                    pass
+
+        thread = threading.Thread(target=serve, daemon=True)
+        thread.start()
+        started = time.monotonic()
+        with pytest.raises(UsageError, match=re.escape(f"no Dask scheduler answers at {address}")):
+            run_cases(BASE, LIBRARY, loads_of(2), run_load, CaseStore(), scheduler=address)
+        assert time.monotonic() - started < 5.0
+        thread.join(5.0)
+        assert not thread.is_alive(), "the connection is not left open"
+
+
+def test_a_worker_is_no_scheduler(address, monkeypatch):
+    with distributed.Client(address, set_as_default=False) as client:
+        worker = next(iter(client.nthreads()))
+    monkeypatch.setattr("tractionpower.studies.runner.cluster.ANSWER_S", 5.0)
+    with pytest.raises(UsageError, match=re.escape(f"no Dask scheduler answers at {worker}")):
+        run_cases(BASE, LIBRARY, loads_of(2), run_load, CaseStore(), scheduler=worker)
 
 
 def test_a_lost_worker_loses_nothing_and_a_lost_scheduler_is_told(tmp_path):

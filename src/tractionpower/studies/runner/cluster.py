@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import pickle
 import queue
@@ -15,8 +16,10 @@ from typing import Any
 
 import distributed
 from distributed import WorkerPlugin, get_worker
+from distributed.comm import connect
 from distributed.comm.core import CommClosedError
 from distributed.scheduler import KilledWorker
+from distributed.security import Security
 
 from tractionpower.errors import UsageError
 from tractionpower.results.versions import NAMES, versions
@@ -185,14 +188,51 @@ def _connect(address: str) -> Any:
     before = log.level
     log.setLevel(logging.CRITICAL)  # what it has to say is said here
     try:
-        return Client(address, timeout=ANSWER_S, set_as_default=False)
+        if _answers(address):
+            return Client(address, timeout=ANSWER_S, set_as_default=False)
     except (*_LOST, ValueError, TypeError) as error:
-        raise UsageError(
-            f"no Dask scheduler answers at {address} within {ANSWER_S:g} s: name the address that `dask scheduler` prints,"
-            " such as tcp://10.0.0.1:8786"
-        ) from error
+        raise _no_answer(address) from error
     finally:
         log.setLevel(before)
+    raise _no_answer(address)
+
+
+def _no_answer(address: str) -> UsageError:
+    return UsageError(
+        f"no Dask scheduler answers at {address} within {ANSWER_S:g} s: name the address that `dask scheduler` prints,"
+        " such as tcp://10.0.0.1:8786 (8787 is the port of its dashboard, not of the scheduler)"
+    )
+
+
+def _answers(address: str) -> bool:
+    """Return whether a scheduler is there.
+
+    Dask's client waits for ever for what takes a connection and never answers, and takes the first bytes of any other protocol
+    for a length to be allocated. So this is asked first, in a thread that may be left behind.
+    """
+    answers: queue.SimpleQueue[bool] = queue.SimpleQueue()
+
+    def ask() -> None:
+        try:
+            answers.put(asyncio.run(asyncio.wait_for(_is_scheduler(address), ANSWER_S)))
+        except Exception:  # whatever it is that answers there: other bytes than a scheduler's end in any error
+            answers.put(False)
+
+    threading.Thread(target=ask, name="greet-scheduler", daemon=True).start()
+    try:
+        return answers.get(timeout=ANSWER_S + WAIT_S)
+    except queue.Empty:
+        return False
+
+
+async def _is_scheduler(address: str) -> bool:
+    comm = await connect(address, timeout=ANSWER_S, **Security().get_connection_args("client"))
+    try:
+        await comm.write({"op": "identity", "reply": True})
+        told: Any = await comm.read()
+    finally:
+        comm.abort()
+    return isinstance(told, dict) and told.get("type") == "Scheduler"
 
 
 def _refuse_other_versions(client: Any) -> None:
