@@ -78,6 +78,8 @@ def test_every_place_has_its_bin():
         away = rows.km - places.bin_km[bins]
         assert (away >= -0.5 * BIN_KM - 1e-9).all()
         assert (away < 0.5 * BIN_KM + 1e-9).all()
+    assert places.bin_km.min() == 0.25
+    assert places.bin_km.max() == 20.0, "no place lies beyond the end of its track"
 
 
 @pytest.mark.parametrize("name", ["E", "F"])

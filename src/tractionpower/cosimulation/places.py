@@ -54,7 +54,9 @@ class Places:
         self._first_bin = np.cumsum([0, *counts])[:-1] - np.array(lowest, np.int64)
         self.bins = int(sum(counts))
         self.bin_track = np.repeat(np.arange(len(self.tracks)), counts)
-        self.bin_km = np.concatenate([(low + np.arange(n) + 0.5) * BIN_KM for low, n in zip(lowest, counts, strict=True)])
+        middles = [(low + np.arange(n) + 0.5) * BIN_KM for low, n in zip(lowest, counts, strict=True)]
+        # a bin that reaches beyond the end of its track counts there
+        self.bin_km = np.concatenate([np.clip(km, *extents[track]) for track, km in zip(self.tracks, middles, strict=True)])
 
     def _lay_zones(self, scenario: Scenario) -> None:
         numbers: dict[str, int] = {}

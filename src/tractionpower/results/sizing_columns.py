@@ -160,7 +160,7 @@ SIZING_TABLES: dict[str, tuple[Column, ...]] = {
         _CASE,
         column("track", "Track.", "text"),
         column("km", "Place along the line.", "f8"),
-        column("lowest_voltage_v", "Lowest voltage there, of trains within 0.25 km and of fixed places."),
+        column("lowest_voltage_v", "Lowest voltage of trains within 0.25 km; of fixed places where none came within 0.5 km."),
     ),
     "case_rails": (
         _CASE,

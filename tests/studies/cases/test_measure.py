@@ -29,12 +29,28 @@ def test_figures_are_those_of_the_whole_run(seed):
     assert told["flagged_steps"] == outcome.run["flagged_steps"]
 
 
-def test_the_profile_is_that_of_the_whole_run(busy_coupling):
+def test_the_profile_is_that_of_trains_of_the_whole_run(busy_coupling):
     case, (results, _, _) = measure(busy_coupling), run_in_memory(busy_coupling)
-    whole = results.table("profile").groupby(["track", "km"], observed=True)["lowest_voltage_v"].min()
+    whole = results.table("profile").query("where == 'pantograph'").set_index(["track", "km"])["lowest_voltage_v"]
     profile = case.tables["case_profile"].to_pandas().set_index(["track", "km"])["lowest_voltage_v"]
-    assert dict(zip(profile.index, profile, strict=True)) == dict(zip(whole.index, whole, strict=True))
+    assert dict(zip(whole.index, profile[whole.index], strict=True)) == dict(zip(whole.index, whole, strict=True))
     assert list(profile.index) == sorted(profile.index)
+
+
+def test_fixed_places_count_where_no_train_came_near(busy_coupling):
+    half = busy_coupling.model_copy(update={"clock": busy_coupling.clock.model_copy(update={"end": 300.0})})
+    results, _, _ = run_in_memory(half)
+    whole = results.table("profile").astype({"track": str, "where": str})
+    trains, fixed = whole[whole["where"] == "pantograph"], whole[whole["where"] != "pantograph"]
+    kept = [
+        (track, km) for track, km in zip(fixed["track"], fixed["km"], strict=True)
+        if (np.abs(trains["km"][trains["track"] == track] - km) > 0.5).all()
+    ]  # fmt: skip
+    profile = measure(half).tables["case_profile"].to_pandas().set_index(["track", "km"])["lowest_voltage_v"]
+    assert 0 < len(set(kept)) < len(set(zip(fixed["track"], fixed["km"], strict=True)))
+    assert set(profile.index) == {*kept, *zip(trains["track"], trains["km"], strict=True)}
+    for track, km in kept:
+        assert profile[track, km] == fixed["lowest_voltage_v"][(fixed["track"] == track) & (fixed["km"] == km)].min()
 
 
 @pytest.fixture(scope="module")

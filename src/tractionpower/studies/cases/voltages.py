@@ -1,4 +1,4 @@
-"""The lowest and highest voltages of a run, and the lowest at every place along the line."""
+"""The lowest and highest voltages of a run, and the lowest that trains have along the line."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from tractionpower.cosimulation.places import Placed, Places
+from tractionpower.cosimulation.places import BIN_KM, Placed, Places
 from tractionpower.kernels.block_tables import Buffers
 from tractionpower.results.tables import make_table
 from tractionpower.supply.compile import SupplyTables
@@ -74,13 +74,20 @@ class VoltageWatch:
             self.lowest = (float(lowest[k]), track, km, float(time_s[np.nanargmin(volts[:, k])]))
 
     def profile(self) -> pa.Table:
-        """Return table ``case_profile`` without the column case, by track and kilometre."""
+        """Return table ``case_profile`` without the column case, by track and kilometre.
+
+        Trains are at a place for some seconds of a run, what is fixed there for all of it: a line through the lowest voltages
+        of both would jump up and down. So a fixed place counts only where no train came near.
+        """
         bins = zip(self._places.bin_track.tolist(), self._places.bin_km.tolist(), strict=True)
-        where = [*self._fixed, *((self._places.tracks[track], km) for track, km in bins)]
-        found: dict[tuple[str, float], float] = {}
-        for place, volts in zip(where, [*self._fixed_v.tolist(), *self._bin_v.tolist()], strict=True):
-            if np.isfinite(volts):
-                found[place] = min(volts, found.get(place, np.inf))
+        where = [(self._places.tracks[track], km) for track, km in bins]
+        found = {place: volts for place, volts in zip(where, self._bin_v.tolist(), strict=True) if np.isfinite(volts)}
+        passed: dict[str, list[float]] = {}
+        for track, km in found:
+            passed.setdefault(track, []).append(km)
+        for (track, km), volts in zip(self._fixed, self._fixed_v.tolist(), strict=True):
+            if np.isfinite(volts) and not any(abs(km - there) <= BIN_KM for there in passed.get(track, ())):
+                found[track, km] = min(volts, found.get((track, km), np.inf))
         return case_table("case_profile", by_place("track", found) | {"lowest_voltage_v": [found[key] for key in sorted(found)]})
 
 
