@@ -74,3 +74,14 @@ def test_a_folder_that_cannot_be_made(tmp_path, writers):
     (tmp_path / "file").write_text("in the way", encoding="utf-8")
     with pytest.raises(OutputError, match="cannot be written"):
         write_reports(Results({}, [], {}), SCENARIO, tmp_path / "file")
+
+
+def test_figures_that_another_command_left_go(tmp_path, writers):
+    writers()
+    figures = tmp_path / "figures"
+    stale = ["envelope_voltage", "outages_by_km_2", "sweep_maps", "compare_voltage", "demand", "train_graph", "trains/R1"]
+    (figures / "trains").mkdir(parents=True)
+    for name in (*stale, "mine"):
+        (figures / f"{name}.png").write_bytes(b"earlier")
+    write_reports(Results({}, [], {}), SCENARIO, tmp_path)
+    assert {path.name for path in figures.iterdir()} == {"figure.png", "mine.png"}

@@ -213,6 +213,21 @@ def test_a_folder_of_another_study_is_refused(folder, write_run):
     assert read_run(folder)["study"] == "other"
 
 
+@pytest.mark.parametrize(("there", "new"), [("", "size"), ("contingency", ""), ("contingency", "size")])
+def test_a_folder_of_another_command_is_refused(tmp_path, there, new):
+    kind = {"kind": there} if there else {}
+    RunWriter(tmp_path / "a", "study", HASH, kind=there).finish({"study": "study", **kind}, [])
+    RunWriter(tmp_path / "b", "study", HASH, kind=there).keep_unfinished({"study": "study"})
+    for folder, held in (("a", "results"), ("b", "an interrupted run")):
+        before = contents(tmp_path / folder)
+        words = rf"holds {held} of another command \({there or 'run'}, not {new or 'run'}\).*--force"
+        with pytest.raises(UsageError, match=words):
+            RunWriter(tmp_path / folder, "study", HASH, kind=new)
+        assert contents(tmp_path / folder) == before
+        RunWriter(tmp_path / folder, "study", HASH, kind=there)
+        RunWriter(tmp_path / folder, "study", HASH, kind=new, force=True)
+
+
 @pytest.mark.parametrize("text", ["{", "[1]", "5", ""])
 def test_a_folder_with_an_unreadable_run_is_refused(folder, text):
     folder.mkdir(parents=True)

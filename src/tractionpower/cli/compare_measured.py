@@ -43,7 +43,8 @@ def compare_measured(
     if target.resolve() == folder.resolve():
         raise UsageError(f"{target} holds the run itself; choose another --out")
     comparison = compared(results, measured, map_file)
-    writer = RunWriter(target, comparison.run["study"], comparison.run["input_hash"], force=force, scenario=results.scenario)
+    study, kind, input_hash = (comparison.run[key] for key in ("study", "kind", "input_hash"))
+    writer = RunWriter(target, study, input_hash, kind=kind, force=force, scenario=results.scenario)
     for name, table in comparison.tables().items():
         writer.append(name, table)
     run = writer.finish(comparison.run, [])

@@ -61,12 +61,15 @@ class StudyCall:
         The study in the results.
     folder
         Where the results go.
+    kind
+        What is computed, as ``run.json`` says it; empty: a run.
     """
 
     loaded: LoadedScenario
     scenario: Scenario
     name: str
     folder: Path
+    kind: str = ""
 
     @property
     def cases_folder(self) -> Path:
@@ -95,7 +98,8 @@ class StudyCall:
         """Return a writer into the folder; `study` is its name there where that is another one."""
         from tractionpower.results.store import RunWriter
 
-        return RunWriter(self.folder, study or self.name, self.scenario.input_hash, force=force, scenario=self.scenario)
+        scenario = self.scenario
+        return RunWriter(self.folder, study or self.name, scenario.input_hash, kind=self.kind, force=force, scenario=scenario)
 
     @contextmanager
     def preparing(self, *, force: bool, study: str = "") -> Iterator[RunWriter]:
@@ -141,7 +145,7 @@ def call_study(study: str, changes: Sequence[str] | None, out: Path | None, kind
     scenario = loaded.changed(changes or [])
     name = _study_name(loaded) if kind else loaded.folder.name
     folder = out if out is not None else Path("reports") / (f"{name}-{kind}" if kind else name)
-    return StudyCall(loaded, scenario, name, folder)
+    return StudyCall(loaded, scenario, name, folder, kind)
 
 
 def _study_name(loaded: LoadedScenario) -> str:

@@ -50,6 +50,7 @@ def computed(
     folder: str | Path | None,
     prepare: Callable[[Writer], Prepared],
     *,
+    kind: str = "",
     force: bool = False,
     progress: Progress | None = None,
 ) -> Results:
@@ -61,13 +62,15 @@ def computed(
     ----------
     prepare
         Called with what takes the tables; makes the runs ready.
+    kind
+        What is computed, as ``run.json`` says it; empty: a run.
     """
     if folder is None:
         memory = MemoryWriter()
         execute, _ = prepare(memory)
         outcome = execute(progress)
         return Results(outcome.run, outcome.key_figures, memory.tables(), scenario)
-    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, force=force, scenario=scenario)
+    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, kind=kind, force=force, scenario=scenario)
     try:
         execute, keep_unfinished = prepare(writer)
     except BaseException:

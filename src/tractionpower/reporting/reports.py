@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from tractionpower.errors import OutputError
@@ -38,6 +39,7 @@ def write_reports(results: Results, scenario: Scenario, folder: Path) -> list[Pa
     try:
         folder.mkdir(parents=True, exist_ok=True)
         paths += _figure_writer(kind)(results, scenario, folder / FIGURES)
+        _remove_other_figures(folder / FIGURES, {*paths})
     except OSError as error:
         hindrances.append(f"figures cannot be written into {folder / FIGURES}: {reason_of(error)}")
     try:
@@ -47,6 +49,20 @@ def write_reports(results: Results, scenario: Scenario, folder: Path) -> list[Pa
     if hindrances:
         raise OutputError(f"the tables are complete, but {'; '.join(hindrances)}")
     return paths
+
+
+def _remove_other_figures(folder: Path, drawn: set[Path]) -> None:
+    """Remove the figures that another command left in a folder of figures; files that no command writes stay."""
+    from tractionpower.reporting import compare_figures, figures, sweep_figures
+    from tractionpower.reporting.outage_map import MAP
+
+    single = (*figures.SINGLE, *figures.GRAPHS, *figures.OUTAGES, *sweep_figures.NAMES, *compare_figures.NAMES)
+    ours = {*folder.glob(f"{MAP}*.png"), *folder.glob(f"{figures.TRAINS}/*.png"), *(folder / f"{name}.png" for name in single)}
+    for stale in ours - drawn:
+        with suppress(OSError):
+            stale.unlink()
+    with suppress(OSError):  # unless something is in it
+        (folder / figures.TRAINS).rmdir()
 
 
 def _figure_writer(kind: str) -> FigureWriter:

@@ -60,25 +60,35 @@ class RunWriter:
         Where the results go; made when it does not exist.
     study
         Identifier of the study; a folder that holds results of another study is refused.
+    kind
+        What is computed of it, as ``run.json`` says it; a folder of another kind is refused. Empty: a run.
     input_hash
         Hash of the scenario, which names the folder of the parts.
     force
-        Write even where results of another study, or other files, are.
+        Write even where results of another study or kind, or other files, are.
     scenario
         What is computed; kept with the results, from the beginning on, so that reports can be made of them later.
 
     Raises
     ------
     UsageError
-        If the folder belongs to another study.
+        If the folder belongs to another study, or to another kind of results of this one.
     OutputError
         If it cannot be written.
     """
 
     def __init__(
-        self, folder: Path, study: str, input_hash: str, *, force: bool = False, scenario: Scenario | None = None
+        self,
+        folder: Path,
+        study: str,
+        input_hash: str,
+        *,
+        kind: str = "",
+        force: bool = False,
+        scenario: Scenario | None = None,
     ) -> None:
         self.folder, self.study = folder, study
+        self._kind = {"kind": kind} if kind else {}
         self.beside: list[Path] = []
         self.held: list[Path] = []
         self._scenario = scenario
@@ -87,7 +97,7 @@ class RunWriter:
         self._files: dict[str, Any] = {}
         self.running = folder / RUNNING / input_hash[:16]
         with failures_told(folder):
-            _refuse_foreign(folder, study, force=force)
+            _refuse_foreign(folder, (study, kind), force=force)
             self._made = [path for path in (folder, *folder.parents) if not path.exists()]
             shutil.rmtree(self.running, ignore_errors=True)
             self.running.mkdir(parents=True)
@@ -96,6 +106,7 @@ class RunWriter:
     def _begin(self, input_hash: str) -> None:
         """Note what the parts are going to be, for the case that nobody is left to say it at the end."""
         note: dict[str, Any] = {"format": 1, "status": "interrupted", "study": self.study, "input_hash": input_hash}
+        note |= self._kind
         if self._scenario is not None:
             write_text(self.running / SCENARIO_FILE, _canonical_json(self._scenario))
             note |= {"name": self._scenario.name, "seed": self._scenario.seed, "verdicts": [], "ledgers": {}}
@@ -171,7 +182,7 @@ class RunWriter:
         """Leave the parts where they are, with a note of what they are; return their folder."""
         with failures_told(self.folder):
             write_json(self.running / KEY_FIGURES_FILE, key_figures)
-            write_json(self.running / RUN_FILE, run)
+            write_json(self.running / RUN_FILE, self._kind | run)
         return self.running
 
     def _join(self, table: str) -> Path:
@@ -296,33 +307,41 @@ def _earlier_files(folder: Path) -> set[str]:
     return {path.name, *(name for name in names if Path(name).name == name)}
 
 
-def _refuse_foreign(folder: Path, study: str, *, force: bool) -> None:
+def _refuse_foreign(folder: Path, own: tuple[str, str], *, force: bool) -> None:
+    """Refuse a folder of anything but the `own` study and kind."""
     if not folder.exists():
         return
     if not folder.is_dir():
         raise UsageError(f"{folder} is a file; name a folder for the results with --out")
     if force:
         return
-    for other in _interrupted_studies(folder):
-        if other != study:
-            told = f"{folder} holds an interrupted run of another study ({other!r}, not {study!r})"
-            raise UsageError(f"{told}; choose --out, or --force")
+    for run in _interrupted_runs(folder):
+        if told := _other(run, own):
+            raise UsageError(f"{folder} holds an interrupted run of {told}; choose --out, or --force")
     path = _run_file(folder)
     if path.is_file():
-        run = read_json(path)
-        owner = "an unreadable run" if run is None else run.get("study")
-        if owner != study:
-            raise UsageError(f"{folder} holds results of another study ({owner!r}, not {study!r}); choose --out, or --force")
+        if told := _other(read_json(path), own):
+            raise UsageError(f"{folder} holds results of {told}; choose --out, or --force")
     elif not all(entry.name in (RUNNING, PARTIAL) or _holds_results(entry) for entry in folder.iterdir()):
         raise UsageError(f"{folder} holds files that are no results of a run; choose another --out, or --force")
 
 
-def _interrupted_studies(folder: Path) -> Iterator[str]:
-    """Yield the studies whose interrupted runs a folder holds."""
+def _other(run: dict[str, Any] | None, own: tuple[str, str]) -> str:
+    """Return in words of what else a run is than of the `own` study and kind; nothing if it is of these."""
+    study, kind = own
+    owner = "an unreadable run" if run is None else run.get("study")
+    if run is None or owner != study:
+        return f"another study ({owner!r}, not {study!r})"
+    other = run.get("kind") or ""
+    return f"another command ({other or 'run'}, not {kind or 'run'})" if other != kind else ""
+
+
+def _interrupted_runs(folder: Path) -> Iterator[dict[str, Any]]:
+    """Yield what is noted of the interrupted runs that a folder holds."""
     for path in (folder / RUNNING).glob(f"*/{RUN_FILE}"):
         run = read_json(path)
         if run is not None:
-            yield str(run.get("study"))
+            yield run
 
 
 def _holds_results(entry: Path) -> bool:

@@ -187,7 +187,8 @@ def compare(
 
 def write_comparison(comparison: Comparison, folder: Path, *, force: bool = False) -> RunWriter:
     """Write the tables of a comparison into a folder and return the writer."""
-    writer = RunWriter(folder, f"{comparison.study}-compare", comparison.input_hash, force=force, scenario=comparison.scenario)
+    study, scenario = f"{comparison.study}-compare", comparison.scenario
+    writer = RunWriter(folder, study, comparison.input_hash, kind="compare", force=force, scenario=scenario)
     for name, rows in comparison.tables().items():
         writer.append(name, rows)
     writer.finish(comparison.run() | {"study": writer.study}, [])

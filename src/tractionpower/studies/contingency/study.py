@@ -209,7 +209,7 @@ def contingency(
         if outcome.interrupted:
             raise KeyboardInterrupt
         return Results(outcome.run, outcome.key_figures, memory.tables(), scenario)
-    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, force=force, scenario=scenario)
+    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, kind="contingency", force=force, scenario=scenario)
     if run_into(outages, writer, **how).interrupted:
         raise KeyboardInterrupt
     return Results.open(folder)

@@ -30,6 +30,9 @@ from tractionpower.studies.feasibility.recording import Recording
 from tractionpower.studies.feasibility.tables import feasibility_notes, key_figures, write_tables
 from tractionpower.studies.feasibility.verdicts import Judged, Span, judge_train
 
+KIND = "feasibility"
+"""What results are, as ``run.json`` says it."""
+
 USEFUL = ("mean_useful_voltage_current_weighted_v", "mean_useful_voltage_time_mean_v")
 
 
@@ -140,7 +143,8 @@ def _put_together(
     verdict: Any = INFEASIBLE if not holds else FEASIBLE if is_judged else NOT_JUDGED
     overall = {"verdict": verdict, "reserve_left_s": reserve, "tolerance_s": tolerance_s}
     figures = [*outcome.key_figures, *key_figures(trains, lost, reserve)]
-    said = {**outcome.run, "input_hash": scenario.input_hash, "feasibility": feasibility_notes(trains, lost, overall)}
+    notes = {"kind": KIND, "feasibility": feasibility_notes(trains, lost, overall)}
+    said = {**outcome.run, "input_hash": scenario.input_hash, **notes}
     outcome = replace(outcome, run=said, key_figures=figures, warnings=(*outcome.warnings, *warnings))
     return Judgement(outcome, trains, delays, sections, lost, verdict, reserve, tolerance_s, outcome.warnings)
 
@@ -270,4 +274,4 @@ def feasibility(
         judging = Judging(scenario, writer, study=scenario.name, tolerance_s=tolerance_s)
         return lambda told: judging.execute(told).outcome, judging.keep_unfinished
 
-    return computed(scenario, folder, prepare, force=force, progress=progress)
+    return computed(scenario, folder, prepare, kind=KIND, force=force, progress=progress)

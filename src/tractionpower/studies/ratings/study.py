@@ -140,4 +140,4 @@ def size(
         sizing = SizingRun(scenario, writer, study=scenario.name)
         return lambda told: sizing.execute(told).outcome, sizing.run.keep_unfinished
 
-    return computed(scenario, folder, prepare, force=force, progress=progress)
+    return computed(scenario, folder, prepare, kind="size", force=force, progress=progress)

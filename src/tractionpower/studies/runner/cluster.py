@@ -15,11 +15,10 @@ from contextlib import suppress
 from typing import Any
 
 import distributed
+import distributed.comm.core as comm_core
 from distributed import WorkerPlugin, get_worker
-from distributed.comm import connect
 from distributed.comm.core import CommClosedError
 from distributed.scheduler import KilledWorker
-from distributed.security import Security
 
 from tractionpower.errors import UsageError
 from tractionpower.results.versions import NAMES, versions
@@ -41,6 +40,8 @@ WAIT_S = 1.0
 KEPT = "What was computed is kept; the same command goes on from there"
 
 Client: Any = distributed.Client  # most of Dask has no types
+Security: Any = distributed.Security
+connect: Any = comm_core.connect
 
 _LOST = (CancelledError, CommClosedError, OSError, TimeoutError)
 

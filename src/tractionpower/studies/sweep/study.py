@@ -241,7 +241,7 @@ def sweep(
         if outcome.interrupted:
             raise KeyboardInterrupt
         return Results(outcome.run, [], memory.tables(), scenario)
-    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, force=force, scenario=scenario)
+    writer = RunWriter(Path(folder), scenario.name, scenario.input_hash, kind="sweep", force=force, scenario=scenario)
     if run_into(study, writer, **how).interrupted:
         raise KeyboardInterrupt
     return Results.open(folder)
