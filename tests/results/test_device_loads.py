@@ -10,7 +10,7 @@ from pieces import CUTS, SEEDS, pieces
 
 from tractionpower.kernels.device_loads import BINS, FINEST_A
 from tractionpower.results import device_loads
-from tractionpower.results.device_loads import DeviceLoads
+from tractionpower.results.device_loads import DeviceLoads, steps_of
 from tractionpower.results.windows import WINDOWS_S, SlidingWindows
 
 RESULTS = ("peak_a", "peak_s", "signed_peak_a", "mean_a", "mean_magnitude_a", "rms_a", "best_rms", "from_s", "best_mean")
@@ -59,7 +59,7 @@ def test_against_brute_force(seed, rows, width, step_s, room):
             (magnitude, found.best_mean, found.mean_from_s),
         ):
             for w, window in enumerate(found.windows_s):
-                steps = math.floor(window / step_s + 0.5)
+                steps = math.floor(window / step_s)
                 mean, first = best_window(values, steps)
                 np.testing.assert_allclose(best[w, c], mean, rtol=1e-13)
                 if first is None:
@@ -134,14 +134,13 @@ def test_the_peak_is_reached_for_no_time_and_nothing_for_all():
     np.testing.assert_allclose(found[:, 1], [2000.0, 2000.0, 1000.0, 1000.0, 0.0], atol=2000.0 / (BINS / 2))
 
 
-@pytest.mark.interpreted
-def test_a_peak_alone_can_be_noted():
-    found = loads_of(np.arange(3.0), np.array([[1.0], [5.0], [2.0]]), 1.0, (10.0,))
-    found.note_peak(0, np.array([7.0, 8.0]), np.array([3.0, -6.0]))
-    found.note_peak(0, np.array([9.0]), np.array([5.5]))
-    found.note_peak(0, np.zeros(0), np.zeros(0))
-    assert (found.peak_a[0], found.peak_s[0], found.signed_peak_a[0]) == (6.0, 8.0, -6.0)
-    assert found.rms_a[0] == pytest.approx(math.sqrt(30.0 / 3.0))
+def test_a_window_is_never_longer_than_asked_for():
+    """A pulse of 8 s every 12 s at steps of 4 s: over 10 s only two steps fit, in which the current never rests."""
+    amps = np.tile([2000.0, 2000.0, 0.0], 10)[:, np.newaxis]
+    found = loads_of(4.0 * np.arange(30), amps, 4.0, (10.0, 12.0, 3.0))
+    assert found.windows_s == (10.0, 12.0)
+    np.testing.assert_allclose(found.best_rms[:, 0], [2000.0, 2000.0 * math.sqrt(2.0 / 3.0)])
+    assert [steps_of(0.3, 0.1), steps_of(7.0, 0.7), steps_of(7.0, 0.71)] == [3, 10, 9]
 
 
 def test_without_rows_nothing_is_known():

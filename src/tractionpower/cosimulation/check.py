@@ -8,7 +8,7 @@ from tractionpower.alignment.checks import check_line
 from tractionpower.cosimulation.useful_voltage_checks import check_useful_voltage
 from tractionpower.errors import Problem
 from tractionpower.model.base import format_time
-from tractionpower.model.scenario import Clock, Scenario
+from tractionpower.model.scenario import ROUNDING_S, Clock, Scenario
 from tractionpower.movement.checks import check_movement
 from tractionpower.results.columns import TABLES
 from tractionpower.results.touch import check_touch
@@ -40,6 +40,12 @@ def check_all_but_movement(scenario: Scenario) -> list[Problem]:
 def step_count(clock: Clock) -> int:
     """Return the number of steps of a run; the last one may reach beyond the end of the clock."""
     return int(np.ceil((clock.end - clock.start) / clock.step_s - 1e-9))
+
+
+def counted_steps(clock: Clock) -> int:
+    """Return the number of steps of a run that begin behind its warm-up."""
+    left_out = np.ceil((clock.counts_from_s - clock.start - ROUNDING_S) / clock.step_s)
+    return step_count(clock) - max(0, int(left_out))
 
 
 def _check_clock(scenario: Scenario) -> list[Problem]:

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tractionpower.cosimulation.check import counted_steps
 from tractionpower.kernels.block_tables import Buffers
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.model.supply import Substation
-from tractionpower.results.device_loads import DeviceLoads
+from tractionpower.results.device_loads import DeviceLoads, steps_of
 from tractionpower.results.windows import WINDOWS_S
 from tractionpower.supply.compile import SupplyTables
 from tractionpower.supply.devices import Device, DeviceCurrents
 from tractionpower.supply.ratings import Rating, ratings_of
 
 Floats = NDArray[np.float64]
-
-_TINY_S = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +46,21 @@ def find_waits(scenario: Scenario) -> tuple[Wait, ...]:
     """Return the times in which a reserve unit is awaited.
 
     Such a time begins when fewer units than before are in service, by a switch event or at the start of the clock by fewer
-    than all, and ends when one comes back, which it must within `reserve_after_s`; else no reserve is awaited.
+    than all, and ends when one comes back, which it must within `reserve_after_s`; else no reserve is awaited. Times of one
+    substation that overlap, as a second unit goes before the first is replaced, are one: the overload is permitted once.
     """
-    return tuple(wait for station in scenario.supply.substations for wait in _waits_of(scenario, station))
+    return tuple(wait for station in scenario.supply.substations for wait in _joined(_waits_of(scenario, station)))
+
+
+def _joined(waits: Iterable[Wait]) -> list[Wait]:
+    """Return the times of one substation, those that overlap or touch as one."""
+    found: list[Wait] = []
+    for wait in sorted(waits, key=lambda wait: wait.from_s):
+        if found and wait.from_s <= found[-1].to_s:
+            found[-1] = replace(found[-1], to_s=max(found[-1].to_s, wait.to_s))
+        else:
+            found.append(wait)
+    return found
 
 
 def _waits_of(scenario: Scenario, station: Substation) -> Iterator[Wait]:
@@ -62,15 +73,16 @@ def _waits_of(scenario: Scenario, station: Substation) -> Iterator[Wait]:
     counts = [(time_s, units) for time_s, units in steps if units is not None]
     for k, ((_, before), (out_s, left)) in enumerate(pairwise(counts)):
         again = next((time_s for time_s, units in counts[k + 2 :] if units > left), None)
-        if left < before and again is not None and again <= out_s + station.reserve_after_s + _TINY_S:
+        if left < before and again is not None and again <= out_s + station.reserve_after_s + ROUNDING_S:
             yield Wait(station.id, out_s, again, 1.0 + station.reserve_overload_percent / 100.0)
 
 
 class DeviceRecorder:
     """Takes the currents of all devices from the rows of a run: a watch (`cosimulation.recorder.Watch`).
 
-    What runs before the warm-up is over does not count. While a reserve unit is awaited (`find_waits`), the currents of the
-    units of its substation count divided by 1 + `reserve_overload_percent`/100; as peaks they count whole.
+    What runs before the warm-up is over does not count. Loads are as they flow. Of units whose reserve is awaited
+    (`find_waits`) the currents are summed up once more, those of these times divided by 1 + `reserve_overload_percent`/100:
+    that is what is held against their ratings.
 
     Parameters
     ----------
@@ -78,6 +90,8 @@ class DeviceRecorder:
         What runs.
     supply
         Its supply, in any states.
+    windows_s
+        Windows to look at besides those of the ratings [s].
 
     Attributes
     ----------
@@ -88,35 +102,44 @@ class DeviceRecorder:
     ratings
         What they can bear, in the same order.
     loads
-        Loads of all columns, over the windows of all reports and those of the ratings that are not longer than the run.
+        Loads of all columns, over all windows that are not longer than what counts of the run.
+    eased
+        Loads of the units whose reserve is awaited, as they are held against their ratings.
+    eased_columns
+        The column of `eased` that belongs to a column of `loads`.
     from_s
         From when on the run counts [s].
     """
 
-    def __init__(self, scenario: Scenario, supply: SupplyTables) -> None:
+    def __init__(self, scenario: Scenario, supply: SupplyTables, windows_s: Iterable[float] = WINDOWS_S) -> None:
         self._currents = DeviceCurrents(supply)
         self.devices: tuple[Device, ...] = self._currents.devices
         self.columns = self._currents.columns
         clock = scenario.clock
         self.ratings: tuple[Rating, ...] = ratings_of(scenario, self.devices)
-        self.from_s = clock.start + (clock.warm_up or 0.0)
-        windows_s = {*WINDOWS_S, *(window for rating in self.ratings for window, _ in rating.windows)}
-        longest_s = clock.end - self.from_s + 0.5 * clock.step_s  # others are never full, and their rows take memory
-        full_s = [window for window in windows_s if window <= longest_s]
+        self.from_s = clock.counts_from_s
+        wanted, rows = {*windows_s, *(window for rating in self.ratings for window, _ in rating.windows)}, counted_steps(clock)
+        full_s = [window for window in wanted if steps_of(window, clock.step_s) <= rows]  # others only take memory
         self.loads = DeviceLoads(len(self.columns), clock.step_s, full_s)
         number = {device.station: k for k, device in enumerate(self.devices) if device.kind == "unit"}
         self._waits = [(number[wait.station], wait) for wait in find_waits(scenario)]
+        self._waiting = sorted({column for column, _ in self._waits})
+        self.eased_columns = {column: k for k, column in enumerate(self._waiting)}
+        rated_s = {window for column in self._waiting for window, _ in self.ratings[column].windows}
+        self.eased = DeviceLoads(len(self._waiting), clock.step_s, [window for window in full_s if window in rated_s])
 
     def __call__(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
         """Take the rows of some steps, with the supply in its states then."""
-        counted = slice(int(np.searchsorted(time_s, self.from_s - _TINY_S)), None)
+        counted = slice(int(np.searchsorted(time_s, self.from_s - ROUNDING_S)), None)
         time_s, amps = time_s[counted], self._currents(rows, supply)[counted]
+        if not len(time_s):
+            return
+        self.loads.add(time_s, amps)
+        eased = amps[:, self._waiting]
         for column, wait in self._waits:
-            within = (time_s >= wait.from_s - _TINY_S) & (time_s < wait.to_s - _TINY_S)
-            self.loads.note_peak(column, time_s[within], amps[within, column])
-            amps[within, column] /= wait.divisor
-        if len(time_s):
-            self.loads.add(time_s, amps)
+            within = (time_s >= wait.from_s - ROUNDING_S) & (time_s < wait.to_s - ROUNDING_S)
+            eased[within, self.eased_columns[column]] /= wait.divisor
+        self.eased.add(time_s, eased)
 
     def of(self, device: int) -> int:
         """Return the column of a device, of a section that of the end with the greater root mean square over the run."""

@@ -9,6 +9,7 @@ import numpy as np
 from tractionpower.cosimulation.calls import call_rows
 from tractionpower.cosimulation.quiet import QuietRun
 from tractionpower.kernels.train_tables import GONE, OUTSIDE, STAYING
+from tractionpower.model.scenario import ROUNDING_S
 from tractionpower.movement.journey import calls_of
 
 STUCK_S = 60.0
@@ -39,13 +40,13 @@ class TrainLateness(NamedTuple):
 def lateness_of(run: QuietRun) -> dict[str, TrainLateness]:
     """Return how late each train of an executed run is; calls within the warm-up do not count."""
     clock, movement, state = run.scenario.clock, run.movement, run.trains
-    from_s, until_s = clock.start + (clock.warm_up or 0.0), clock.end
+    from_s, until_s = clock.counts_from_s, clock.end
     found = {}
     for k, planned in enumerate(movement.runs):
         calls = calls_of(planned, state, int(movement.tables.trains[k]["first_stop"]))
         late = []
         for row in call_rows(planned.run.id, calls, planned.route_m):
-            if np.isfinite(row.planned_s) and not (row.actual_s < from_s - 1e-9):
+            if np.isfinite(row.planned_s) and not (row.actual_s < from_s - ROUNDING_S):
                 overdue = until_s - row.planned_s
                 late += [max(0.0, row.late_s)] if np.isfinite(row.actual_s) else [overdue] * (overdue >= 0.0)
         mover = state.movers[k]

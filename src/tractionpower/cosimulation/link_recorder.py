@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.results.extremes import Array, Extremes
 from tractionpower.results.key_figures import KeyFigure, link_figures
 from tractionpower.results.tables import feeders_table, switches_table
@@ -47,7 +47,7 @@ class LinkRecorder:
 
     def add_trips(self, switched: Sequence[dict[str, Any]], from_s: float) -> None:
         """Count the trips among the events of what was switched, those from a time on [s]."""
-        self.trips.update(row["subject"] for row in switched if row["kind"] == "tripped" and row["time_s"] >= from_s - 1e-9)
+        self.trips.update(row["subject"] for row in switched if row["kind"] == "tripped" and row["time_s"] >= from_s - ROUNDING_S)
 
     def write(self, wanted: set[str], time_s: Array, link_a: Array, links: Sequence[Link], append: Append) -> None:
         """Write the rows of steps into those of the tables ``feeders``, ``cabins`` and ``switches`` that are wanted."""

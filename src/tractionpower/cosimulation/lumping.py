@@ -22,7 +22,7 @@ from tractionpower.model.base import format_time
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.line import Line, Track
 from tractionpower.model.loads import Load
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.model.supply import ContactLine, ReturnCircuit, Supply
 from tractionpower.supply.bundles import return_tracks
 from tractionpower.supply.compile import SupplyTables, compile_network
@@ -36,7 +36,7 @@ class WorstStep:
 
     def __init__(self, scenario: Scenario, names: Sequence[str], tracks: Sequence[str]) -> None:
         self._scenario, self._names, self._tracks = scenario, names, tracks
-        self._from_s = scenario.clock.start + (scenario.clock.warm_up or 0.0)
+        self._from_s = scenario.clock.counts_from_s
         self._lowest_v = np.inf
         self._loads: tuple[Load, ...] = ()
         self._train = ""
@@ -45,7 +45,7 @@ class WorstStep:
 
     def add(self, rows: Buffers, placed: Placed, supply: SupplyTables) -> None:
         """Look at steps, the places of whose trains are `placed`."""
-        counts = (rows.trains["voltage_v"] > 0.0) & (rows.trains["time_s"] >= self._from_s - 1e-9)
+        counts = (rows.trains["voltage_v"] > 0.0) & (rows.trains["time_s"] >= self._from_s - ROUNDING_S)
         volts = np.where(counts, rows.trains["voltage_v"], np.inf)
         if not len(volts) or volts.min() >= self._lowest_v:
             return

@@ -18,7 +18,7 @@ from tractionpower.cosimulation.train_recorder import TrainRecorder
 from tractionpower.cosimulation.voltage_verdicts import VoltageVerdicts
 from tractionpower.kernels.block_tables import Buffers, State, take_rows
 from tractionpower.kernels.network import FLAG_A
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.results.columns import TABLES
 from tractionpower.results.extremes import Array, Extremes
 from tractionpower.results.key_figures import (
@@ -31,7 +31,7 @@ from tractionpower.results.key_figures import (
 from tractionpower.results.ledgers import ElectricLedger
 from tractionpower.results.tables import loads_table, make_table, substations_table
 from tractionpower.results.trains import calls_table, trains_table
-from tractionpower.supply.characteristics import dissipative_resistance, no_load_voltage
+from tractionpower.supply.characteristics import dissipative_resistances, no_load_voltage
 from tractionpower.supply.compile import SupplyTables
 
 Watch = Callable[[Array, Buffers, SupplyTables], None]
@@ -52,7 +52,7 @@ class Recorder:
         clock = scenario.clock
         self.step_s = clock.step_s
         self.every = 1 if scenario.output.every_s is None else round(scenario.output.every_s / clock.step_s)
-        self.figures_from_s = clock.start + (clock.warm_up or 0.0)
+        self.figures_from_s = clock.counts_from_s
         wanted = scenario.output.tables
         self.wanted = set(TABLES if wanted is None else wanted)
         self.substation_a = Extremes(len(supply.substations))
@@ -99,7 +99,7 @@ class Recorder:
         one_way = [substation.conducts == "forward" for substation in self.supply.substations]
         rectifier_v = np.where(one_way, self._no_load_v(), np.nan)  # a plant that conducts both ways never blocks
         self.events.add_blocked(time_s, rows.source_v, rectifier_v)
-        counted = time_s >= self.figures_from_s - 1e-9
+        counted = time_s >= self.figures_from_s - ROUNDING_S
         t, rows = time_s[counted], take_rows(rows, counted)
         self.counted.add(rows.steps, self.step_s)
         self.substation_a.add(t, rows.source_a)
@@ -114,7 +114,7 @@ class Recorder:
 
     def _counted(self, rows: NDArray[np.void], placed: Placed) -> tuple[NDArray[np.void], Placed]:
         """Return the rows of trains that count in key figures, with their places."""
-        counted = rows["time_s"] >= self.figures_from_s - 1e-9
+        counted = rows["time_s"] >= self.figures_from_s - ROUNDING_S
         if counted.all():
             return rows, placed
         return rows[counted], Placed(placed.track[counted], placed.km[counted], placed.sign[counted])
@@ -123,9 +123,10 @@ class Recorder:
         supply, append = self.supply, self.writer.append
         if "substations" in self.wanted and supply.substations:
             names = [substation.id for substation in supply.substations]
+            ohm = dissipative_resistances(supply.substations)
             append(
                 "substations",
-                substations_table(time_s, names, self._no_load_v(), self._dissipative_ohm(), rows.source_v, rows.source_a),
+                substations_table(time_s, names, self._no_load_v(), ohm, rows.source_v, rows.source_a),
             )
         self.links.write(self.wanted, time_s, rows.link_a, supply.links, append)
         if "loads" in self.wanted and supply.loads:
@@ -143,10 +144,6 @@ class Recorder:
         """Return E of the substations that feed in the present states [V], NaN for others."""
         supply = self.supply
         return np.where(supply.source_port >= 0, [no_load_voltage(s) for s in supply.substations], np.nan)
-
-    def _dissipative_ohm(self) -> Array:
-        """Return the dissipative part of their resistance with the units in service [ohm], NaN where not given."""
-        return np.array([_given(dissipative_resistance(substation)) for substation in self.supply.substations])
 
     def _write_trains(self, rows: NDArray[np.void], track: NDArray[np.int64], km: Array) -> None:
         trains = self.trains
@@ -265,7 +262,3 @@ class Recorder:
 
 def _trains(names: Sequence[str]) -> str:
     return f"train{'s' if len(names) > 1 else ''} {', '.join(names)}"
-
-
-def _given(value: float | None) -> float:
-    return np.nan if value is None else value

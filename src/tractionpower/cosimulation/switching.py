@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from tractionpower.cosimulation.tables import ROUNDING_S, CompiledScenario, assemble
+from tractionpower.cosimulation.tables import CompiledScenario, assemble
 from tractionpower.kernels.block_tables import Buffers, State, rewired_state
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.model.supply import Supply
 from tractionpower.model.switchgear import Protection
 from tractionpower.supply.compile import SupplyTables

@@ -11,16 +11,13 @@ from numpy.typing import NDArray
 from tractionpower.alignment.path import RoutePath
 from tractionpower.kernels.block_tables import FLEET, LOAD, LOAD_STEP, SOURCE, WAY, BlockTables
 from tractionpower.kernels.train_port import ROOM
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.model.supply import Supply
 from tractionpower.movement.compile import Movement
 from tractionpower.movement.driving.driven import compile_driven
 from tractionpower.supply.characteristics import load_steps, no_load_voltage
 from tractionpower.supply.compile import SupplyTables, compile_network
 from tractionpower.supply.stretches import Stretch
-
-ROUNDING_S = 5e-7
-"""A step starts at a time of day when it starts this much before it: start + k step is rounded, times have microseconds [s]."""
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -17,7 +17,7 @@ from tractionpower.cosimulation.train_events import TrainEvents
 from tractionpower.kernels.block_tables import State
 from tractionpower.kernels.sums import add_by_group
 from tractionpower.kernels.train_tables import GONE, OUTSIDE, STAYING
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.movement.journey import JourneyCall, calls_of
 from tractionpower.movement.ledgers import (
     ELECTRIC_SHARE,
@@ -96,7 +96,7 @@ class TrainRecorder:
     def __init__(self, scenario: Scenario, compiled: CompiledScenario, state: State) -> None:
         self._state, self._block = state, compiled.block
         self.movement, self.step_s = compiled.movement, scenario.clock.step_s
-        self._from_s = scenario.clock.start + (scenario.clock.warm_up or 0.0)
+        self._from_s = scenario.clock.counts_from_s
         self.names, self.places = self.movement.names, Places(scenario, self.movement)
         trains, voltages = len(self.names), compiled.supply.voltages
         lengths = np.array([planned.formation.length_m for planned in self.movement.runs]) / 1000.0
@@ -127,7 +127,7 @@ class TrainRecorder:
         self.overlaps.add(rows["time_s"], rows["train"], placed)
         self.events.add(rows)
         self._add_ledgers(rows)
-        counted = rows["time_s"] >= self._from_s - 1e-9
+        counted = rows["time_s"] >= self._from_s - ROUNDING_S
         if counted.all():
             self._count(rows, placed)
         elif counted.any():

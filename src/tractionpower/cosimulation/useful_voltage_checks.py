@@ -37,7 +37,7 @@ def _check_zones(scenario: Scenario) -> Iterator[Problem]:
 
 def _check_windows(scenario: Scenario) -> Iterator[Problem]:
     clock = scenario.clock
-    begin = clock.start + (clock.warm_up or 0.0)
+    begin = clock.counts_from_s
     allowed = f"{format_time(begin)} to {format_time(clock.end)}, what counts of the run"
     for number, window in enumerate(scenario.sizing.useful_voltage.windows):
         if begin <= window.from_ and window.to <= clock.end:

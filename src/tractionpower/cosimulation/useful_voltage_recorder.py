@@ -13,7 +13,7 @@ from tractionpower.cosimulation.feeding_zones import ZoneMap, lay_zones
 from tractionpower.cosimulation.places import Placed, Places
 from tractionpower.kernels.block_tables import Buffers
 from tractionpower.model.limits import Limit, find_limit, system_voltages, useful_limit
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.movement.compile import Movement
 from tractionpower.results.spells import TOLERANCE_V
 from tractionpower.results.tables import make_table
@@ -57,7 +57,7 @@ class UsefulVoltageRecorder:
         self.names = movement.names
         self.places = Places(scenario, movement) if places is None else places
         self.zones = ZoneMap(lay_zones(scenario), self.places.tracks, compile_axes(scenario.line))
-        self._step_s, self._from_s = clock.step_s, clock.start + (clock.warm_up or 0.0)
+        self._step_s, self._from_s = clock.step_s, clock.counts_from_s
         given = [(window.from_, window.to) for window in study.windows]
         windows = windows_of(self._from_s, clock.end, given)
         self._useful = WindowedUsefulVoltage(
@@ -83,7 +83,7 @@ class UsefulVoltageRecorder:
         """Take rows of trains (`TRAIN_ROW`), ordered by time; `placed` are their places, where they are known."""
         if not len(rows):
             return
-        counted = (rows["time_s"] >= self._from_s - 1e-9) & (rows["voltage_v"] != 0.0)
+        counted = (rows["time_s"] >= self._from_s - ROUNDING_S) & (rows["voltage_v"] != 0.0)
         if not counted.any():
             return
         where = self.places.place(rows["train"], rows["s_m"]) if placed is None else placed

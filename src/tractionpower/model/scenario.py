@@ -24,6 +24,9 @@ from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Day, Timetable, TrainRun
 from tractionpower.model.vehicle import Train, Vehicle
 
+ROUNDING_S = 5e-7
+"""A step starts at a time of day when it starts this much before it: start + k step is rounded, times have microseconds [s]."""
+
 
 class Clock(Declaration):
     """The simulated time."""
@@ -42,6 +45,11 @@ class Clock(Declaration):
         if self.warm_up is not None and self.warm_up >= self.end - self.start:
             raise PydanticCustomError("clock", "warm_up leaves nothing of the run")
         return self
+
+    @property
+    def counts_from_s(self) -> float:
+        """From when on a run counts in key figures [s after midnight]: the end of the warm-up."""
+        return self.start + (self.warm_up or 0.0)
 
 
 class Output(Declaration):

@@ -98,7 +98,7 @@ class RunData:
     @property
     def counts_from_s(self) -> float:
         """Time from which rows count in key figures [s]."""
-        return self.scenario.clock.start + (self.scenario.clock.warm_up or 0.0)
+        return self.scenario.clock.counts_from_s
 
     @property
     def counted_hours(self) -> float:

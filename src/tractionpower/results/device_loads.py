@@ -16,13 +16,26 @@ _ROOM = 512
 """Rows that are summed up at a time."""
 
 
+_WHOLE = 1e-6
+"""Part of a step by which a window may miss a whole number of steps."""
+
+
+def steps_of(window_s: float, step_s: float) -> int:
+    """Return how many whole steps fit into a window: a load that a device may bear for 10 s is not held against 12 s.
+
+    >>> steps_of(10.0, 4.0), steps_of(60.0, 0.1), steps_of(2.0, 5.0)
+    (2, 600, 0)
+    """
+    return int(window_s / step_s + _WHOLE)
+
+
 class DeviceLoads:
     """Loads of several series of currents, each with a row in every step.
 
     Currents have signs; peaks, windows and the load duration are of their magnitude, for a device warms up in either
     direction. The results do not depend on the pieces in which the rows come. Of windows with the same value the first
-    counts; a window is rounded to whole steps, and one that is shorter than a step is left out. All sums are kept in
-    double-double, so nothing drifts (`kernels/device_loads.py`).
+    counts; a window is made of as many whole steps as fit into it (`steps_of`), and one that is shorter than a step is left
+    out. All sums are kept in double-double, so nothing drifts (`kernels/device_loads.py`).
 
     Parameters
     ----------
@@ -43,8 +56,8 @@ class DeviceLoads:
 
     def __init__(self, columns: int, step_s: float, windows_s: Sequence[float] = WINDOWS_S) -> None:
         self.step_s, self.count = float(step_s), 0
-        self.windows_s = tuple(sorted({float(window) for window in windows_s if window > step_s * (1.0 - 1e-9)}))
-        steps = np.array([int(window / step_s + 0.5) for window in self.windows_s], np.int64)
+        self.windows_s = tuple(sorted({float(window) for window in windows_s if steps_of(window, step_s)}))
+        steps = np.array([steps_of(window, step_s) for window in self.windows_s], np.int64)
         ring, found = (2, columns, int(steps.max(initial=0)) + _ROOM + 1), (2, len(steps), columns)
         self._sums = DeviceSums(
             high=np.zeros(ring),
@@ -63,14 +76,6 @@ class DeviceLoads:
         rows = as_rows(amps).reshape(len(time_s), len(self._sums.width))
         add_loads(self._sums, self.count, self.step_s, as_rows(time_s), rows)
         self.count += len(rows)
-
-    def note_peak(self, column: int, time_s: Array, amps: Array) -> None:
-        """Count currents [A] of one series for its peak alone."""
-        if not len(amps):
-            return
-        at, peak = int(np.abs(amps).argmax()), self._sums.peak
-        if abs(amps[at]) > peak[0, column]:
-            peak[:, column] = abs(amps[at]), time_s[at], amps[at]
 
     @property
     def seconds(self) -> float:

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
 from tractionpower.kernels.tables import BLOCKED_CONDUCTANCE_S
 from tractionpower.model.limits import SystemVoltages
 from tractionpower.model.loads import Load
@@ -47,6 +52,12 @@ def dissipative_resistance(substation: Substation) -> float | None:
     """
     k, given = substation.units_in_service or substation.units, substation.plant_dissipative_ohm
     return None if given is None else given * substation.units / k
+
+
+def dissipative_resistances(substations: Sequence[Substation]) -> NDArray[np.float64]:
+    """Return the dissipative parts of the internal resistances with the units in service [ohm]; NaN where not given."""
+    given = (dissipative_resistance(substation) for substation in substations)
+    return np.array([np.nan if ohm is None else ohm for ohm in given], float)
 
 
 def no_load_voltage(substation: Substation) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.kernels.block_tables import Buffers
-from tractionpower.supply.characteristics import dissipative_resistance
+from tractionpower.supply.characteristics import dissipative_resistances
 from tractionpower.supply.compile import SupplyTables
 from tractionpower.supply.gauges import Section
 
@@ -131,7 +131,7 @@ def grid_power(rows: Buffers, supply: SupplyTables) -> Floats:
 
     U I at the busbar and, where it is known, the heat of transformers and rectifiers in the present states.
     """
-    heat_ohm = np.array([dissipative_resistance(station) or 0.0 for station in supply.substations])
+    heat_ohm = np.nan_to_num(dissipative_resistances(supply.substations))
     return np.nan_to_num(rows.source_v * rows.source_a + heat_ohm * rows.source_a**2)
 
 

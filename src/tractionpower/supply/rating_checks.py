@@ -8,10 +8,14 @@ from itertools import pairwise
 from tractionpower.errors import Problem
 from tractionpower.io.rating_files import DUTY_CLASSES, RECTIFIER_UNITS
 from tractionpower.io.wording import counted, did_you_mean, shown
+from tractionpower.model.conductors import Conductor
 from tractionpower.model.limits import common_limits, find_limit
-from tractionpower.model.ratings import DutyRow, RectifierUnit, find_unit
+from tractionpower.model.ratings import DutyRow, RectifierUnit, duty_of, find_unit
 from tractionpower.model.scenario import Scenario
-from tractionpower.model.supply import Substation, Supply
+from tractionpower.model.supply import ContactLine, Substation, Supply
+from tractionpower.results.device_loads import steps_of
+from tractionpower.supply.ampacity import HeatedWire, ampacity, heated_wires, weather_of
+from tractionpower.supply.ratings import NO_OVERLOAD
 
 _RANGES = {
     "wire_ambient_c": (-60.0, 80.0),
@@ -36,7 +40,9 @@ def check_ratings(scenario: Scenario) -> list[Problem]:
         problems += _check_class(path, station, scenario)
         problems += _check_reserve(path, station)
     problems += _check_windows(scenario.duty_classes, scenario.clock.step_s)
-    return [*problems, *_check_contracts(scenario.supply), *_check_limits(scenario)]
+    limits = list(_check_limits(scenario))
+    problems += [*_check_contracts(scenario.supply), *limits, *_check_whole_steps(scenario)]
+    return problems if any(problem.code == "bad_limit" for problem in limits) else [*problems, *_check_wires(scenario)]
 
 
 def _check_unit(path: str, station: Substation, scenario: Scenario) -> Iterator[Problem]:
@@ -114,6 +120,74 @@ def _check_windows(rows: Sequence[DutyRow], step_s: float) -> Iterator[Problem]:
                 )
                 remedy = "what a longer window permits never rules; correct the multiples"
                 yield Problem("duty_row_without_effect", "duty_classes", found, "less for longer windows", remedy, "warning")
+
+
+def _check_whole_steps(scenario: Scenario) -> Iterator[Problem]:
+    """Yield windows of ratings that are no whole number of steps: they are held a part of a step too short."""
+    step_s = scenario.clock.step_s
+    uneven: dict[float, list[str]] = {}
+    for window_s, owner in _used_windows(scenario):
+        steps = steps_of(window_s, step_s)
+        if steps and window_s - steps * step_s > 1e-6 * step_s:
+            uneven.setdefault(window_s, []).append(owner)
+    for window_s, owners in sorted(uneven.items()):
+        steps = steps_of(window_s, step_s)
+        found = (
+            f"a window of {window_s:g} s ({', '.join(dict.fromkeys(owners))}) is no whole number of steps of {step_s:g} s:"
+            f" it counts as {steps * step_s:g} s"
+        )
+        remedy = "choose a clock.step_s of which the window is a whole number"
+        yield Problem("window_not_whole", "clock.step_s", found, "", remedy, "warning")
+
+
+def _used_windows(scenario: Scenario) -> Iterator[tuple[float, str]]:
+    """Yield the windows that ratings of the supply can have [s], and in words whose they are."""
+    supply = scenario.supply
+    for station in supply.substations:
+        unit = find_unit(scenario.rectifier_units, station.unit) if station.unit is not None else None
+        name = station.duty_class or (unit.duty_class if unit is not None else "")
+        if unit is not None or station.rated_current_a is not None:
+            rows = duty_of(scenario.duty_classes, name)
+            windows = [(row.window_s, f"class {name}") for row in rows] or [(w, "no duty class") for w, _ in NO_OVERLOAD]
+            yield from ((window_s, owner) for window_s, owner in windows if window_s > 0.0)
+    given = {
+        "window_contact_line_s": any(row.rated_current_a is not None or row.type or row.wires for row in supply.contact_lines),
+        "window_cable_s": bool(supply.feeders)
+        or any(
+            getattr(station, name, None) is not None
+            for station in (*supply.substations, *supply.section_cabins)
+            for name in ("feeder_rated_current_a", "return_rated_current_a")
+        ),
+        "window_rails_s": any(row.rated_current_a is not None or row.rail is not None for row in supply.return_circuit),
+    }
+    for name, limit in common_limits(scenario.limits, supply.system, "window_").items():
+        if given.get(name):
+            yield limit.value, name
+
+
+def _check_wires(scenario: Scenario) -> Iterator[Problem]:
+    """Yield contact lines whose wires, in the weather of the limits table, are at their highest temperature without current."""
+    weather = weather_of(scenario.limits, scenario.supply.system)
+    for index, row in enumerate(scenario.supply.contact_lines):
+        wires = _heated(row, scenario.conductors) if row.rated_current_a is None else ()
+        if weather is None or not wires or ampacity(wires, weather).current_a > 0.0:
+            continue
+        hottest = min(wires, key=lambda wire: wire.steepest(weather))
+        found = (
+            f"at {weather.ambient_c:g} °C and {weather.sun_wpm2:g} W/m² of sun wire {hottest.conductor} is beyond its"
+            f" {hottest.highest_c:g} °C without any current: the contact line may carry nothing"
+        )
+        remedy = "correct wire_ambient_c, wire_sun_wpm2 or wire_wind_mps of the limits table, or give rated_current_a"
+        yield Problem("no_ampacity", f"supply.contact_lines[{index}]", found, "", remedy, "warning")
+
+
+def _heated(row: ContactLine, table: Sequence[Conductor]) -> Sequence[HeatedWire]:
+    """Return the wires of a contact line; none where not all is known of them, of which the checks of conductors tell."""
+    try:
+        found = heated_wires(row, table)
+    except (KeyError, ValueError):
+        return ()
+    return () if isinstance(found, str) else found
 
 
 def _check_contracts(supply: Supply) -> Iterator[Problem]:

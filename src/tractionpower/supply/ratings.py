@@ -122,7 +122,7 @@ class _Raters:
         name = station.duty_class or (kind.duty_class if kind is not None else "")
         rows = duty_of(self.scenario.duty_classes, name)
         if not rows:
-            return name, NO_OVERLOAD, "no duty class: taken to bear no overload", "user"
+            return name, NO_OVERLOAD, "no duty class: taken to bear no overload", "derived"
         sources = "; ".join(dict.fromkeys(row.source for row in rows))
         windows = tuple((row.window_s, row.multiple) for row in rows)
         return name, windows, f"class {name}: {sources}", _least_sure(*(row.status for row in rows))
@@ -169,6 +169,8 @@ class _Raters:
             f"heat balance of its wires, {found.ruling} at its highest temperature; air {weather.ambient_c:g} °C,"
             f" wind {weather.wind_mps:g} m/s, sun {weather.sun_wpm2:g} W/m²"
         )
+        if found.current_a == 0.0:
+            told += ": it may carry nothing"
         return self._conductor(window, found.current_a, "derived", told)
 
     def _rails(self, device: Device) -> Rating:

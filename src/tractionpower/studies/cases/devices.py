@@ -10,7 +10,7 @@ import pyarrow as pa
 from tractionpower.cosimulation.device_recorder import DeviceRecorder
 from tractionpower.model.scenario import Scenario
 from tractionpower.studies.cases.voltages import case_table, coded
-from tractionpower.studies.ratings.use import Use, ruling, uses
+from tractionpower.studies.ratings.use import Use, ruling, uses_of
 from tractionpower.supply.compile import compile_network
 from tractionpower.supply.devices import devices_of
 from tractionpower.supply.ratings import Rating, ratings_of
@@ -26,8 +26,7 @@ def ratings_by_id(scenario: Scenario) -> dict[str, Rating]:
 
 def device_uses(scenario: Scenario, recorder: DeviceRecorder) -> tuple[Use, ...]:
     """Return the use of each device over the window that rules it, in the order of the devices."""
-    allowed_percent = scenario.sizing.utilisation_percent
-    return ruling(uses(recorder.devices, recorder.ratings, recorder.loads, recorder.from_s, allowed_percent))
+    return ruling(uses_of(recorder, scenario.sizing.utilisation_percent))
 
 
 def device_figures(found: tuple[Use, ...]) -> dict[str, Any]:

@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.kernels.block_tables import Buffers
+from tractionpower.model.scenario import Scenario
 from tractionpower.results.extremes import add_up
 from tractionpower.results.ledgers import ElectricLedger
-from tractionpower.results.windows import ClockDemand
+from tractionpower.studies.ratings.demand import DemandWatch
 from tractionpower.supply.compile import SupplyTables
-from tractionpower.supply.devices import grid_power, sums_of_columns, supply_points
+from tractionpower.supply.devices import sums_of_columns
 
 Floats = NDArray[np.float64]
 
@@ -20,10 +21,8 @@ class EnergyWatch:
 
     Parameters
     ----------
-    supply
+    scenario, supply
         What runs.
-    step_s
-        Length of a step [s].
 
     Attributes
     ----------
@@ -31,19 +30,18 @@ class EnergyWatch:
         The electric ledger of the steps.
     """
 
-    def __init__(self, supply: SupplyTables, step_s: float) -> None:
-        self._step_s = step_s
-        self._stations = list(supply_points(supply).values())
-        self._demand = ClockDemand(len(self._stations), step_s)
+    def __init__(self, scenario: Scenario, supply: SupplyTables) -> None:
+        self._step_s = scenario.clock.step_s
+        self._demand = DemandWatch(scenario, supply)
         self._busbar_j = np.zeros(1)
         self.ledger = ElectricLedger()
 
     def add(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
         """Take steps."""
         self.ledger.add(rows.steps, self._step_s)
-        power = np.nan_to_num(rows.source_v) * rows.source_a
-        self._busbar_j = add_up(self._busbar_j, power.sum(axis=1, keepdims=True) * self._step_s)
-        self._demand.add(time_s, sums_of_columns(grid_power(rows, supply), self._stations))
+        power = sums_of_columns(np.nan_to_num(rows.source_v) * rows.source_a, [range(rows.source_a.shape[1])])
+        self._busbar_j = add_up(self._busbar_j, power * self._step_s)
+        self._demand(time_s, rows, supply)
 
     @property
     def busbar_kwh(self) -> float:
@@ -58,5 +56,4 @@ class EnergyWatch:
     @property
     def highest_demand_kw(self) -> float:
         """Highest mean power of a supply point over a quarter of an hour by the clock; NaN where none was complete."""
-        best = self._demand.best
-        return float(np.fmax.reduce(best, initial=np.nan)) / 1000.0
+        return float(np.fmax.reduce(self._demand.power_kw, axis=None, initial=np.nan))

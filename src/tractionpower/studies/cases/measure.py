@@ -18,7 +18,7 @@ from tractionpower.cosimulation.places import Places
 from tractionpower.cosimulation.quiet import QuietRun
 from tractionpower.cosimulation.useful_voltage_recorder import UsefulVoltageRecorder
 from tractionpower.kernels.block_tables import Buffers, take_rows
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.studies.cases.devices import device_figures, device_uses, devices_table
 from tractionpower.studies.cases.energy import EnergyWatch
 from tractionpower.studies.cases.rails import RailWatch
@@ -41,7 +41,7 @@ def measure(scenario: Scenario) -> CaseResult:
     """
     run = QuietRun(scenario)
     watch = CaseWatch(run)
-    devices = DeviceRecorder(scenario, run.compiled.supply)
+    devices = DeviceRecorder(scenario, run.compiled.supply, windows_s=())
     run.watches += [watch, devices]
     run.execute()
     late = lateness_of(run)
@@ -75,15 +75,15 @@ class CaseWatch:
     def __init__(self, run: QuietRun) -> None:
         scenario, supply = run.scenario, run.compiled.supply
         clock = scenario.clock
-        self._from_s = clock.start + (clock.warm_up or 0.0)
+        self._from_s = clock.counts_from_s
         self._places = Places(scenario, run.movement)
         self.voltages, self.rails = VoltageWatch(supply, self._places), RailWatch(supply, self._places)
-        self.energy = EnergyWatch(supply, clock.step_s)
+        self.energy = EnergyWatch(scenario, supply)
         self._useful = UsefulVoltageRecorder(scenario, run.movement, self._places, whole_run_only=True)
 
     def __call__(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
         """Take the rows of some steps."""
-        counted = time_s >= self._from_s - 1e-9
+        counted = time_s >= self._from_s - ROUNDING_S
         if not counted.any():
             return
         time_s, rows = time_s[counted], take_rows(rows, counted)
@@ -129,8 +129,8 @@ def _status(run: QuietRun, watch: CaseWatch) -> dict[str, str]:
 
 def _trips(run: QuietRun) -> int:
     clock = run.scenario.clock
-    from_s = clock.start + (clock.warm_up or 0.0)
-    return sum(row["kind"] == "tripped" and row["time_s"] >= from_s - 1e-9 for row in run.events)
+    from_s = clock.counts_from_s
+    return sum(row["kind"] == "tripped" and row["time_s"] >= from_s - ROUNDING_S for row in run.events)
 
 
 def _train_figures(late: dict[str, TrainLateness], tolerance_s: float) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tractionpower.model.quantity import unit_of
+from tractionpower.results.words import yes_or_no
 from tractionpower.studies.compare.folders import Variant
 from tractionpower.studies.sweep.differences import FIGURES, change_of, figure_of
 
@@ -116,6 +117,6 @@ def compared_verdicts(variants: Sequence[Variant]) -> list[dict[str, Any]]:
             at = ", ".join(str(verdict[key]) for key in ("place", "time") if verdict.get(key))
             row = {"figure": str(verdict.get("name", "")), "limit": str(verdict.get("limit") or ""), "folder": variant.name}
             row |= {"value": verdict.get("value"), "limit_value": verdict.get("limit_value"), "at": at}
-            row |= {"met": "" if met is None else "yes" if met else "no", "status": verdict.get("status")}
+            row |= {"met": yes_or_no(met), "status": verdict.get("status")}
             matched.setdefault((row["figure"], row["limit"]), []).append(row)
     return [row for rows in matched.values() for row in rows]

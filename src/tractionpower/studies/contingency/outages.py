@@ -212,7 +212,7 @@ class _Finder:
 
     def _until_reserve(self, station: Substation, units: int) -> tuple[Setting, ...]:
         clock = self.scenario.clock
-        counted_s = clock.start + (clock.warm_up or 0.0)  # what passes within the warm-up would not be seen
+        counted_s = clock.counts_from_s  # what passes within the warm-up would not be seen
         from_s = counted_s if self.begins_s is None else self.begins_s
         again_s = from_s + station.reserve_after_s
         return (from_s, "units_in_service", units - 1), (again_s, "units_in_service", units)

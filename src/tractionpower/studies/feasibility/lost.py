@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tractionpower.model.scenario import ROUNDING_S
 from tractionpower.studies.feasibility.areas import Areas
 from tractionpower.studies.feasibility.chain import TrainFacts
 from tractionpower.studies.feasibility.judgement import NAN, LostTime
@@ -92,7 +93,7 @@ class LossProfile:
 def loss_profile(facts: TrainFacts, areas: Areas, from_s: float) -> LossProfile:
     """Return where a train lost time to low voltage after the time `from_s` [s], up to where it came."""
     rows = facts.trace.rows
-    counts = rows["time_s"] >= from_s - 1e-9
+    counts = rows["time_s"] >= from_s - ROUNDING_S
     counted, held = rows[counts], facts.held_s[counts]
     from_m, to_m = (float(counted["s_m"][0]) if len(counted) else facts.reached_m), facts.reached_m
     if not to_m > from_m:

@@ -114,7 +114,7 @@ def judge_outcome(scenario: Scenario, run: Run, done: tuple[Outcome, Recording],
     facts = _facts(scenario, run, recording)
     chains = _chains(_links(scenario, run.compiled.movement), facts)
     clock = scenario.clock
-    span = Span(clock.start + (clock.warm_up or 0.0), float(outcome.run["end_s"]), tolerance_s)
+    span = Span(clock.counts_from_s, float(outcome.run["end_s"]), tolerance_s)
     areas, useful = Areas(scenario), _useful_voltages(outcome)
     judged = [judge_train(train, chains[train.name], areas, span, useful.get(train.name, (NAN, NAN))) for train in facts]
     return _put_together(scenario, (outcome, judged), writer, tolerance_s, _warnings(facts))

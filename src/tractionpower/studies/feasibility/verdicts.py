@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tractionpower.model.scenario import ROUNDING_S
 from tractionpower.studies.feasibility.areas import Areas
 from tractionpower.studies.feasibility.chain import START, Chain, Link, TrainFacts
 from tractionpower.studies.feasibility.judgement import (
@@ -89,7 +90,7 @@ def _counts_from(links: Sequence[Link], span: Span) -> float:
 def _counts(link: Link, span: Span) -> bool:
     """Tell whether a timed call lies within the time that counts: neither in the warm-up nor before the clock."""
     time_s = link.event.actual_s if np.isfinite(link.event.actual_s) else max(link.event.planned_s, span.from_s)
-    return bool(time_s >= span.from_s - 1e-9)
+    return bool(time_s >= span.from_s - ROUNDING_S)
 
 
 def _is_overdue(link: Link, span: Span) -> bool:
@@ -138,7 +139,7 @@ def _whole_run(facts: TrainFacts, span: Span) -> tuple[float, float]:
     """Return the running time alone at nominal voltage [s], and what it grows to on the recorded voltages, as a ratio."""
     shortest = facts.alone.shortest
     rows = facts.trace.rows
-    counts = rows["time_s"] >= span.from_s - 1e-9
+    counts = rows["time_s"] >= span.from_s - ROUNDING_S
     counted = rows[counts]
     whole = float(shortest.time_s[-1]) if len(shortest.time_s) else NAN
     if not len(counted):
@@ -163,7 +164,7 @@ def _verdict(facts: TrainFacts, chain: Chain, counted: list[int], profile: LossP
         verdict = NOT_FINISHED
     elif worst is not None and worst.lateness is not None and worst.lateness.late_s > span.tolerance_s:
         verdict = INFEASIBLE
-    elif not chain.links or not len(facts.trace.rows[facts.trace.rows["time_s"] >= span.from_s - 1e-9]):
+    elif not chain.links or not len(facts.trace.rows[facts.trace.rows["time_s"] >= span.from_s - ROUNDING_S]):
         verdict = NOT_JUDGED
     story = Story(
         facts, chain, worst, missing, profile, span.until_s, verdict, spare, chain.links[at] if at is not None else None

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tractionpower.errors import Problem
 from tractionpower.io.wording import did_you_mean, shown
 from tractionpower.model.measured import SUBJECTS, MeasuredMap, MeasuredSeries
+from tractionpower.model.scenario import ROUNDING_S
 from tractionpower.results.results import Results
 
 Array = NDArray[Any]
@@ -72,7 +73,7 @@ class Run:
         scenario = results.scenario
         clock = scenario.clock if scenario is not None else None
         self.step_s = float(results.run.get("step_s") or (clock.step_s if clock is not None else 0.0))
-        self.from_s = -np.inf if clock is None else clock.start + (clock.warm_up or 0.0)
+        self.from_s = -np.inf if clock is None else clock.counts_from_s
         self._groups: dict[str, dict[str, pd.DataFrame]] = {}
 
     def has_power(self, each: MeasuredSeries) -> bool:
@@ -119,7 +120,7 @@ class Run:
     def _of(self, table: str) -> dict[str, pd.DataFrame]:
         if table not in self._groups:
             rows = self.results.table(table)
-            rows = rows[rows["time_s"] >= self.from_s - 1e-6]
+            rows = rows[rows["time_s"] >= self.from_s - ROUNDING_S]
             groups = rows.groupby(list(KEYS[table]), observed=True, sort=True)
             self._groups[table] = {" ".join(map(str, key)): own.sort_values("time_s", kind="stable") for key, own in groups}
         return self._groups[table]

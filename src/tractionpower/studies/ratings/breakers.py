@@ -14,7 +14,8 @@ from tractionpower.kernels.windows import SPELL, add_spells
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.extremes import Extremes
 from tractionpower.results.windows import as_rows
-from tractionpower.studies.ratings.counted import counted, counts_from
+from tractionpower.results.words import yes_or_no
+from tractionpower.studies.ratings.counted import counted
 from tractionpower.supply.compile import SupplyTables
 from tractionpower.supply.protection import protections
 
@@ -37,7 +38,7 @@ class BreakerWatch:
 
     def __init__(self, scenario: Scenario, supply: SupplyTables) -> None:
         clock = scenario.clock
-        self._from_s, self._step_s = counts_from(clock), clock.step_s
+        self._from_s, self._step_s = clock.counts_from_s, clock.step_s
         settings = protections(scenario.supply, supply.links)
         self._links = [k for k, link in enumerate(supply.links) if link.kind in ("feeder", "cabin")]
         self._names = [supply.links[k].id for k in self._links]
@@ -74,7 +75,7 @@ class BreakerWatch:
             row = {
                 "device": name, "setting_a": setting_a, "peak_a": peak_a, "peak_s": float(self._peaks.highest_s[k]),
                 "share_percent": share, "trips": trips.get(name, 0),
-                "met": "" if math.isnan(share) else "yes" if share <= allowed_percent else "no",
+                "met": yes_or_no(None if math.isnan(share) else share <= allowed_percent),
             }  # fmt: skip
             if math.isnan(setting_a):
                 yield row

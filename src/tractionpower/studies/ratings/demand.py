@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from tractionpower.kernels.block_tables import Buffers
 from tractionpower.model.scenario import Scenario
-from tractionpower.studies.ratings.counted import counted, counts_from
+from tractionpower.results.words import yes_or_no
+from tractionpower.studies.ratings.counted import counted
 from tractionpower.supply.compile import SupplyTables
 from tractionpower.supply.devices import grid_power, sums_of_columns, supply_points
 
@@ -47,7 +48,7 @@ class DemandWatch:
 
     def __init__(self, scenario: Scenario, supply: SupplyTables) -> None:
         clock = scenario.clock
-        self._from_s, self._step_s = counts_from(clock), clock.step_s
+        self._from_s, self._step_s = clock.counts_from_s, clock.step_s
         points = supply_points(supply)
         self.points, self._stations = tuple(points), list(points.values())
         given = [[supply.substations[k].contract_power_kw for k in stations] for stations in self._stations]
@@ -63,18 +64,27 @@ class DemandWatch:
         watts = sums_of_columns(grid_power(rows, supply), self._stations)
         at = np.floor(time_s / PERIOD_S + _NEAR * self._step_s / PERIOD_S).astype(np.int64)
         here_s = np.minimum((at + 1) * PERIOD_S - time_s, self._step_s)  # of a step over a boundary the part before it
-        for number, seconds in ((at - self._first, here_s), (at - self._first + 1, self._step_s - here_s)):
-            some = seconds > 0.0
-            np.add.at(self._energy_j, number[some], watts[some] * seconds[some, np.newaxis])
-            np.add.at(self._covered_s, number[some], seconds[some])
+        # The two parts of a step are added before those of the next one, however many come at a time.
+        number, seconds = np.stack([at, at + 1], axis=1) - self._first, np.stack([here_s, self._step_s - here_s], axis=1)
+        some = seconds > 0.0
+        shared = watts[:, np.newaxis, :] * seconds[:, :, np.newaxis]
+        np.add.at(self._energy_j, number[some], shared[some])
+        np.add.at(self._covered_s, number[some], seconds[some])
+
+    @property
+    def power_kw(self) -> Floats:
+        """Mean power of each quarter of an hour [kW], shape (quarters, points); NaN where the run does not cover it whole."""
+        whole = self._covered_s > PERIOD_S - 2.0 * _NEAR * self._step_s
+        return np.where(whole, self._energy_j.T / np.where(whole, self._covered_s, 1.0) / 1000.0, np.nan).T
 
     def rows(self) -> Iterator[dict[str, Any]]:
         """Yield the rows of table ``demand``: supply points by quarters of an hour that the run covers as a whole."""
-        whole = np.flatnonzero(self._covered_s > PERIOD_S - 2.0 * _NEAR * self._step_s)
+        known = self.power_kw
+        whole = np.flatnonzero(np.isfinite(known).all(axis=1))
         for k, (point, contract_kw) in enumerate(zip(self.points, self.contract_kw, strict=True)):
             for number in whole.tolist():
-                power_kw = self._energy_j[number, k] / self._covered_s[number] / 1000.0
-                met = "" if math.isnan(contract_kw) else "yes" if power_kw <= contract_kw else "no"
+                power_kw = float(known[number, k])
+                met = yes_or_no(None if math.isnan(contract_kw) else power_kw <= contract_kw)
                 yield {
                     "supply_point": point, "from_s": (self._first + number) * PERIOD_S, "power_kw": power_kw,
                     "contract_power_kw": contract_kw, "met": met,

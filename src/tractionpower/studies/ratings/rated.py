@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tractionpower.results.device_loads import DeviceLoads
-from tractionpower.studies.ratings.use import WHOLE_RUN, Use
+from tractionpower.studies.ratings.use import WHOLE_RUN, Use, Windows
 from tractionpower.supply.devices import columns_of
 
 NAN = math.nan
@@ -31,14 +31,14 @@ def rating_rows(found: Sequence[Use], loads: DeviceLoads, from_s: float) -> Iter
     for use in found:
         uses.setdefault(use.device.id, {})[use.window_s] = use
     devices = [next(iter(own.values())).device for own in uses.values()]
-    columns, means = columns_of(devices), _Means(loads)
+    columns, windows = columns_of(devices), Windows(loads, from_s)
     for number, own in enumerate(uses.values()):
         at = np.flatnonzero(columns == number)
-        for window_s in sorted({WHOLE_RUN, *own, *means.full}):
+        for window_s in sorted({WHOLE_RUN, *own, *windows.full}):
             rated = own.get(window_s)
-            load_a, begin_s = means.rms(at, window_s, from_s) if rated is None else (rated.load_a, rated.from_s)
+            load_a, begin_s = windows.rms(at, window_s) if rated is None else (rated.load_a, rated.from_s)
             yield {**_device(own), **_held(rated), "window_s": window_s, "load_a": load_a, "from_s": begin_s,
-                   "mean_a": means.mean(at, window_s)}  # fmt: skip
+                   "mean_a": windows.mean(at, window_s)}  # fmt: skip
 
 
 def _device(own: dict[float, Use]) -> dict[str, Any]:
@@ -59,27 +59,3 @@ def _held(use: Use | None) -> dict[str, Any]:
         "permitted_a": use.permitted_a, "utilisation_percent": use.utilisation_percent, "ruling": use.ruling,
         "met": use.met, "left_a": use.left_a,
     }  # fmt: skip
-
-
-class _Means:
-    """Highest root mean squares and means by columns and windows."""
-
-    def __init__(self, loads: DeviceLoads) -> None:
-        self._windows = loads.windows_s
-        self._rms, self._rms_from_s, self._mean = loads.best_rms, loads.from_s, loads.best_mean
-        self._run_rms, self._run_mean = loads.rms_a, loads.mean_magnitude_a
-        self.full = [window for window, best in zip(self._windows, self._rms, strict=True) if np.isfinite(best).all()]
-
-    def rms(self, at: Any, window_s: float, run_from_s: float) -> tuple[float, float]:
-        if window_s == WHOLE_RUN:
-            return float(self._run_rms[at].max()), run_from_s
-        row = self._windows.index(window_s)
-        column = at[int(np.argmax(self._rms[row, at]))]
-        return float(self._rms[row, column]), float(self._rms_from_s[row, column])
-
-    def mean(self, at: Any, window_s: float) -> float:
-        if window_s == WHOLE_RUN:
-            return float(self._run_mean[at].max())
-        if window_s not in self.full:
-            return NAN
-        return float(self._mean[self._windows.index(window_s), at].max())

@@ -14,7 +14,7 @@ from tractionpower.kernels.block_tables import Buffers
 from tractionpower.model.line import Line
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.extremes import Extremes
-from tractionpower.studies.ratings.counted import counted, counts_from
+from tractionpower.studies.ratings.counted import counted
 from tractionpower.supply.compile import SupplyTables
 from tractionpower.supply.devices import sums_of_columns
 from tractionpower.supply.merging import Merger
@@ -114,7 +114,7 @@ class SharingWatch:
     """
 
     def __init__(self, scenario: Scenario, supply: SupplyTables) -> None:
-        self._from_s, self._zones = counts_from(scenario.clock), find_zones(supply, scenario.line)
+        self._from_s, self._zones = scenario.clock.counts_from_s, find_zones(supply, scenario.line)
         self._feeders = [links for zone in self._zones.values() for links in zone.values()]
         self._sums = Extremes(len(self._feeders))
 

@@ -9,6 +9,7 @@ from tractionpower.model.base import format_time
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.spells import TOLERANCE_V
+from tractionpower.results.words import yes_or_no
 from tractionpower.studies.ratings.findings import Findings, Row
 from tractionpower.studies.ratings.use import Use
 from tractionpower.studies.ratings.useful import DEFINITIONS, useful_figures
@@ -53,7 +54,7 @@ def _zones(scenario: Scenario, found: Findings) -> Iterator[Row]:
     for each in found.useful:
         if each.kind == "zone":
             name = f"{ZONES}, {DEFINITIONS[each.definition]}{words[each.window]} (of trains there for {shortest_s:g} s or more)"
-            met = "yes" if each.value_v >= limit.value - TOLERANCE_V else "no"
+            met = yes_or_no(each.value_v >= limit.value - TOLERANCE_V)
             yield _verdict(name, (each.value_v, "V"), (f"zone {each.subject}", each.when), limit, met)
 
 

@@ -15,7 +15,7 @@ from tractionpower.studies.ratings.duration import duration_rows
 from tractionpower.studies.ratings.peaks import PeakWatch
 from tractionpower.studies.ratings.rated import rating_rows
 from tractionpower.studies.ratings.sharing import SharingWatch
-from tractionpower.studies.ratings.use import Use, uses
+from tractionpower.studies.ratings.use import Use, uses_of
 
 Rows = Iterable[dict[str, Any]]
 
@@ -47,8 +47,7 @@ class RatingsWatch:
 
     def uses(self) -> tuple[Use, ...]:
         """Return how much of their ratings the devices use, over every window of the ratings."""
-        recorder = self.recorder
-        return uses(recorder.devices, recorder.ratings, recorder.loads, recorder.from_s, self._sizing.utilisation_percent)
+        return uses_of(self.recorder, self._sizing.utilisation_percent)
 
     def tables(self, trips: Mapping[str, int]) -> Iterator[tuple[str, Rows]]:
         """Yield the names of the tables and their rows; `trips` are how often breakers have tripped, by feeder."""
