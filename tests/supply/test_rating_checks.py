@@ -5,6 +5,7 @@ from small_studies import make_scenario, station
 from small_supplies import assert_only
 
 from tractionpower.cosimulation.check import check_scenario
+from tractionpower.io.conductor_files import shipped_conductors
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.io.rating_files import DUTY_CLASSES, RECTIFIER_UNITS
 from tractionpower.model.limits import Limit, overlay
@@ -109,6 +110,26 @@ def test_one_contract_for_each_supply_point():
 def test_limits_that_cannot_be_used(name, value, code):
     scenario = made(station("A", 0.0), limits=[Limit(system="dc3000", name=name, value=value)])
     assert_only(check_ratings(scenario), code, "limits", name)
+
+
+def test_windows_that_are_no_whole_number_of_steps():
+    found = of_class((0.0, 1.0), (10.0, 3.0), (60.0, 2.0), step_s=4.0)
+    assert_only(found, "window_not_whole", "clock.step_s", "10 s (class own)", "counts as 8 s", severity="warning")
+    fine = {"limits": [Limit(system="dc3000", name="window_cable_s", value=7.0)], "step_s": 4.0}
+    assert check_ratings(made(station("A", 0.0), **fine)) == []  # no cable is rated
+    told = check_ratings(made(station("A", 0.0, feeder_rated_current_a=900.0), **fine))
+    assert_only(told, "window_not_whole", "clock.step_s", "7 s (window_cable_s)", "counts as 4 s", severity="warning")
+    assert of_class((0.0, 1.0), (10.0, 3.0), step_s=0.1) == []  # 100 steps, in whatever way 0.1 is rounded
+
+
+def test_wires_that_may_carry_nothing():
+    rows = [{"from_km": 0.0, "to_km": 10.0, "type": "C120-2C"}, {"from_km": 10.0, "to_km": 20.0, "resistance_ohm_per_km": 0.05}]
+    base = made(station("A", 0.0), contact_lines=rows, limits=[Limit(system="dc3000", name="wire_ambient_c", value=80.0)])
+    hot = base.model_copy(update={"conductors": shipped_conductors()})
+    assert_only(check_ratings(hot), "no_ampacity", "supply.contact_lines[0]", "at 80 °C", "may carry nothing", severity="warning")
+    own = made(station("A", 0.0), contact_lines=[rows[0] | {"rated_current_a": 900.0}, rows[1]], limits=[hot.limits[0]])
+    assert check_ratings(own.model_copy(update={"conductors": shipped_conductors(), "limits": hot.limits})) == []
+    assert check_ratings(base.model_copy(update={"conductors": ()})) == []  # wires that nobody knows are told by others
 
 
 def test_missing_windows_matter_where_conductors_are_rated():

@@ -69,6 +69,7 @@ def test_without_a_class_no_overload_is_borne():
     found = of_unit(rated_current_a=1000.0)
     assert (found.rated_a, found.duty_class) == (1000.0, "")
     assert found.windows == ((0.0, 1.0), (60.0, 1.0))
+    assert found.status == "derived"  # the user has given the current, not that it is a limit for a minute
 
 
 def test_own_cycles_stand_in_for_a_class():

@@ -8,7 +8,7 @@ import pytest
 from tractionpower.results.device_loads import DeviceLoads
 from tractionpower.results.windows import WINDOWS_S
 from tractionpower.studies.ratings.rated import rating_rows
-from tractionpower.studies.ratings.use import ruling, uses
+from tractionpower.studies.ratings.use import MOST_PERCENT, ruling, uses
 from tractionpower.supply.devices import Device
 from tractionpower.supply.ratings import Rating
 
@@ -93,6 +93,14 @@ def test_of_a_section_each_window_takes_the_greater_end():
     assert (by_window[60.0].load_a, by_window[60.0].from_s) == (pytest.approx(900.0), 0.0)
     assert by_window[0.0].load_a == pytest.approx(math.sqrt((100**2 + 400**2) / 2))
     assert [use.window_s for use in ruling(found)] == [0.0, 60.0]
+
+
+def test_a_device_that_may_carry_nothing():
+    """The utilisation of any current is beyond all limits, yet a number; without current nothing is violated."""
+    found = used(((0.0, 1.0), (60.0, 1.0)), (10, 100), rated_a=0.0)
+    assert {(use.permitted_a, use.utilisation_percent, use.met) for use in found.values()} == {(0.0, MOST_PERCENT, "no")}
+    assert found[0.0].left_a == pytest.approx(-10.0)
+    assert [(use.utilisation_percent, use.met) for use in used(((0.0, 1.0),), (0, 100), rated_a=0.0).values()] == [(0.0, "yes")]
 
 
 def test_a_window_that_nobody_looked_at_is_an_error_of_the_program():
