@@ -79,7 +79,8 @@ def test_until_the_reserve_feeds_the_units_are_held_to_less():
     np.testing.assert_allclose(recorder.loads.rms_a, np.sqrt((amps**2).mean(axis=0)), rtol=1e-12)
     names = [device.id for device in recorder.devices]
     a = recorder.of(names.index("A unit"))
-    assert recorder.eased_columns == {a: 0}
+    plant = recorder.of(names.index("A"))
+    assert recorder.eased_columns == {a: 0, plant: 1}
     held = amps[:, [a]].copy()
     held[20:80] /= 1.25
     brute = max(np.sqrt((held[k : k + 60, 0] ** 2).mean()) for k in range(61))
@@ -95,6 +96,9 @@ def test_until_the_reserve_feeds_the_units_are_held_to_less():
     assert use.load_a / use.permitted_a == pytest.approx(brute / 300.0, rel=1e-12)
     assert 300.0 < use.permitted_a <= 1.25 * 300.0
     assert found["B unit", 60.0].permitted_a == 300.0
+    whole = found["A", 60.0]  # rated by the two units in service from the start: as much used as they are
+    assert whole.load_a == pytest.approx(max(np.sqrt((amps[k : k + 60, plant] ** 2).mean()) for k in range(61)), rel=1e-12)
+    assert whole.utilisation_percent == pytest.approx(use.utilisation_percent, rel=1e-12)
 
 
 def test_waits_that_overlap_permit_the_overload_once():

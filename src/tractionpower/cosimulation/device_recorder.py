@@ -77,12 +77,24 @@ def _waits_of(scenario: Scenario, station: Substation) -> Iterator[Wait]:
             yield Wait(station.id, out_s, again, 1.0 + station.reserve_overload_percent / 100.0)
 
 
+def _with_changing_units(scenario: Scenario) -> list[Substation]:
+    """Return the substations whose units in service change during the run."""
+    supply = scenario.supply
+    named = {event.device for event in supply.switch_events if event.units_in_service is not None}
+    return [station for station in supply.substations if station.id in named]
+
+
+def _rated_by(station: Substation) -> int:
+    """Return by how many units a substation is rated: those in service from the start (`supply.ratings`)."""
+    return station.units if station.units_in_service is None else station.units_in_service
+
+
 class DeviceRecorder:
     """Takes the currents of all devices from the rows of a run: a watch (`cosimulation.recorder.Watch`).
 
-    What runs before the warm-up is over does not count. Loads are as they flow. Of units whose reserve is awaited
-    (`find_waits`) the currents are summed up once more, those of these times divided by 1 + `reserve_overload_percent`/100:
-    that is what is held against their ratings.
+    What runs before the warm-up is over does not count. Loads are as they flow. Where units go and come, other currents are
+    held against the ratings: of units whose reserve is awaited (`find_waits`) those of these times divided by
+    1 + `reserve_overload_percent`/100, of the substation as many of its units as it is rated by.
 
     Parameters
     ----------
@@ -104,7 +116,7 @@ class DeviceRecorder:
     loads
         Loads of all columns, over all windows that are not longer than what counts of the run.
     eased
-        Loads of the units whose reserve is awaited, as they are held against their ratings.
+        Loads of substations whose units go and come, and of their units, as they are held against their ratings.
     eased_columns
         The column of `eased` that belongs to a column of `loads`.
     from_s
@@ -121,12 +133,14 @@ class DeviceRecorder:
         wanted, rows = {*windows_s, *(window for rating in self.ratings for window, _ in rating.windows)}, counted_steps(clock)
         full_s = [window for window in wanted if steps_of(window, clock.step_s) <= rows]  # others only take memory
         self.loads = DeviceLoads(len(self.columns), clock.step_s, full_s)
-        number = {device.station: k for k, device in enumerate(self.devices) if device.kind == "unit"}
-        self._waits = [(number[wait.station], wait) for wait in find_waits(scenario)]
-        self._waiting = sorted({column for column, _ in self._waits})
-        self.eased_columns = {column: k for k, column in enumerate(self._waiting)}
-        rated_s = {window for column in self._waiting for window, _ in self.ratings[column].windows}
-        self.eased = DeviceLoads(len(self._waiting), clock.step_s, [window for window in full_s if window in rated_s])
+        unit, plant = ({d.station: k for k, d in enumerate(self.devices) if d.kind == kind} for kind in ("unit", "substation"))
+        self._waits = [(unit[wait.station], wait) for wait in find_waits(scenario)]
+        changing = _with_changing_units(scenario)
+        self._plants = [(plant[s.id], unit[s.id], _rated_by(s)) for s in changing]
+        own = sorted({column for s in changing for column in (unit[s.id], plant[s.id])})
+        self.eased_columns = {column: k for k, column in enumerate(own)}
+        rated_s = {window for column in own for window, _ in self.ratings[column].windows}
+        self.eased = DeviceLoads(len(own), clock.step_s, [window for window in full_s if window in rated_s])
 
     def __call__(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
         """Take the rows of some steps, with the supply in its states then."""
@@ -135,11 +149,13 @@ class DeviceRecorder:
         if not len(time_s):
             return
         self.loads.add(time_s, amps)
-        eased = amps[:, self._waiting]
+        held, at = amps[:, list(self.eased_columns)], self.eased_columns
         for column, wait in self._waits:
             within = (time_s >= wait.from_s - ROUNDING_S) & (time_s < wait.to_s - ROUNDING_S)
-            eased[within, self.eased_columns[column]] /= wait.divisor
-        self.eased.add(time_s, eased)
+            held[within, at[column]] /= wait.divisor
+        for plant, unit, units in self._plants:
+            held[:, at[plant]] = units * held[:, at[unit]]
+        self.eased.add(time_s, held)
 
     def of(self, device: int) -> int:
         """Return the column of a device, of a section that of the end with the greater root mean square over the run."""

@@ -78,11 +78,30 @@ def test_rail_potentials_and_useful_voltages_are_those_of_the_whole_run(busy_cou
     assert f"train {case.figures['useful_train']}" == min(trains, key=lambda place: trains[place])
 
 
+@pytest.fixture(scope="module")
+def quarters():
+    """A quarter of an hour whose ends steps of 3.5 s straddle; ten substations of two supply points, one with changing units."""
+    plants = [
+        {"id": f"S{k}", "km": 20.0 * k / 9, "no_load_voltage_v": 3600.0 + k, "internal_resistance_ohm": 0.1, "units": 2,
+         "dissipative_resistance_ohm": 0.013, "supply_point": "PQ"[k % 2]}
+        for k in range(10)
+    ]  # fmt: skip
+    plants[3] |= {"rated_current_a": 300.0, "reserve_units": 1, "reserve_after_s": 600.0, "reserve_overload_percent": 50.0}
+    runs = [run("1", time=0.0), run("2", "series_motors", "2", 20.0, 0.0, time=30.0), run("3", "table", time=200.0)]
+    events = [{"device": "S3", "time": time, "units_in_service": k} for time, k in ((350.0, 1), (650.0, 2))]
+    scenario = couple(*runs, substations=plants, switch_events=events)
+    clock = scenario.clock.model_copy(update={"end": 2000.0, "step_s": 3.5, "warm_up": 60.0})
+    return scenario.model_copy(update={"clock": clock})
+
+
 @pytest.mark.parametrize("block", [1, 37])
-def test_nothing_depends_on_the_blocks(block, monkeypatch, busy_coupling):
-    whole = measure(busy_coupling)
+@pytest.mark.parametrize("case", ["busy_coupling", "quarters"])
+def test_nothing_depends_on_the_blocks(block, case, monkeypatch, request):
+    scenario = request.getfixturevalue(case)
+    whole = measure(scenario)
+    assert np.isfinite(whole.figures["highest_demand_kw"]) == (case == "quarters")
     monkeypatch.setattr(quiet, "STEPS", block)
-    pieces = measure(busy_coupling)
+    pieces = measure(scenario)
     np.testing.assert_equal(pieces.figures, whole.figures)
     for name, table in whole.tables.items():
         assert pieces.tables[name].equals(table), name

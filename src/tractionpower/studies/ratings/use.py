@@ -41,8 +41,8 @@ class Use:
     load_a
         Highest root mean square of the current over the window [A].
     permitted_a
-        What the rating permits [A]; NaN without a rating. More by what is permitted for the time until a reserve feeds, where
-        a unit awaits one: the utilisation is that of the load with these times eased, `permitted_a` what it makes of the load.
+        What the rating permits [A]; NaN without a rating. Where units go and come during the run it is the load over its
+        utilisation, so that it has in it what is permitted until a reserve feeds, and the units that are in service when.
     utilisation_percent
         `load_a` of `permitted_a`, at most `MOST_PERCENT` [%]; NaN without a rating.
     from_s
@@ -70,7 +70,7 @@ class Use:
 
 
 class Eased(NamedTuple):
-    """Loads of units that await a reserve, as they are held against their ratings, and the column of each device there."""
+    """Loads of units that go and come and of their substations, as they are held against their ratings, and their columns."""
 
     loads: DeviceLoads
     columns: Mapping[int, int]
@@ -100,7 +100,7 @@ def uses(
     allowed_percent
         Highest utilisation that is met [%].
     eased
-        Loads of units that await a reserve, as they are held against their ratings.
+        Loads of units that go and come and of their substations, as they are held against their ratings.
 
     Raises
     ------
