@@ -12,6 +12,11 @@ from tractionpower.results.useful_voltage import UsefulVoltage
 NAMES = ("train_current_weighted_v", "train_time_mean_v", "zone_current_weighted_v", "zone_time_mean_v")
 
 
+def means_of(useful):
+    """Return the four means of all trains and zones."""
+    return dict(zip(NAMES, (*useful.of_trains()[:2], *useful.of_zones()[:2]), strict=True))
+
+
 def test_two_trains_by_hand():
     """Train 0: 2 s in zone 0 at 1000 A and 3000 V; train 1: 1 s there at 1000 A, 2700 V, then 1 s without current, 3300 V."""
     useful = UsefulVoltage(3, 2)
@@ -23,11 +28,11 @@ def test_two_trains_by_hand():
         np.array([True, False, True, True]),
         1.0,
     )
-    np.testing.assert_allclose(useful.train_current_weighted_v, [3000.0, 2700.0, np.nan])
-    np.testing.assert_allclose(useful.train_time_mean_v, [3000.0, 3300.0, np.nan])
+    np.testing.assert_allclose(useful.of_trains().current_weighted_v, [3000.0, 2700.0, np.nan])
+    np.testing.assert_allclose(useful.of_trains().time_mean_v, [3000.0, 3300.0, np.nan])
     # T = 2 s for both: (3000 * 2000 + 2700 * 1000) / (2000 + 1000)
-    np.testing.assert_allclose(useful.zone_current_weighted_v, [2900.0, np.nan])
-    np.testing.assert_allclose(useful.zone_time_mean_v, [3000.0, np.nan])
+    np.testing.assert_allclose(useful.of_zones().current_weighted_v, [2900.0, np.nan])
+    np.testing.assert_allclose(useful.of_zones().time_mean_v, [3000.0, np.nan])
 
 
 def test_a_train_counts_by_its_mean_current_in_the_zone():
@@ -36,15 +41,15 @@ def test_a_train_counts_by_its_mean_current_in_the_zone():
     train = np.array([0, *[1] * 10])
     voltage = np.where(train == 0, 2600.0, 3000.0)
     useful.add(train, np.zeros(11, int), voltage, np.full(11, 800.0), np.ones(11, bool), 1.0)
-    assert useful.zone_current_weighted_v[0] == pytest.approx(2800.0)
-    assert useful.zone_time_mean_v[0] == pytest.approx((2600.0 + 30_000.0) / 11.0)
+    assert useful.of_zones().current_weighted_v[0] == pytest.approx(2800.0)
+    assert useful.of_zones().time_mean_v[0] == pytest.approx((2600.0 + 30_000.0) / 11.0)
 
 
 def test_a_constant_voltage_is_its_own_mean():
     useful = UsefulVoltage(1, 1)
     useful.add(np.zeros(9, int), np.zeros(9, int), np.full(9, 3000.0), np.linspace(-500.0, 1500.0, 9), np.ones(9, bool), 0.1)
-    for name in NAMES:
-        np.testing.assert_allclose(getattr(useful, name), [3000.0], rtol=1e-14)
+    for volts in means_of(useful).values():
+        np.testing.assert_allclose(volts, [3000.0], rtol=1e-14)
 
 
 def by_brute_force(rows, trains, zones):
@@ -90,5 +95,5 @@ def test_random_rows(seed, count, trains, zones, cuts):
     whole.add(*columns)
     expected = by_brute_force(rows, trains, zones)
     for name in NAMES:
-        np.testing.assert_allclose(getattr(found, name), expected[name], rtol=1e-12)
-        np.testing.assert_array_equal(getattr(found, name), getattr(whole, name))  # to the last bit
+        np.testing.assert_allclose(means_of(found)[name], expected[name], rtol=1e-12)
+        np.testing.assert_array_equal(means_of(found)[name], means_of(whole)[name])  # to the last bit

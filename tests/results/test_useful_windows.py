@@ -31,7 +31,9 @@ def test_a_train_that_stays_too_briefly_does_not_count():
     assert (brief.trains[0], brief.left_out[0]) == (2, 0)
     assert kept.current_weighted_v[0] == pytest.approx(3000.0)
     assert kept.time_mean_v[0] == pytest.approx(3100.0)
-    np.testing.assert_allclose([brief.current_weighted_v[0], brief.time_mean_v[0]], [useful.zone_current_weighted_v[0], 2825.0])
+    np.testing.assert_allclose(
+        [brief.current_weighted_v[0], brief.time_mean_v[0]], [useful.of_zones().current_weighted_v[0], 2825.0]
+    )
     np.testing.assert_allclose(useful.of_trains(2.0).current_weighted_v, [3000.0, np.nan])
     assert useful.of_zones([np.array([0])], 3.0).trains[0] == 1  # as long as that is long enough
 

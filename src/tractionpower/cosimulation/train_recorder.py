@@ -31,7 +31,7 @@ from tractionpower.movement.turns import together
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.spells import TrainSpells
 from tractionpower.results.trains import CallRow, SupplySummary, TrainSummary, supply_figures, train_figures, useful_figures
-from tractionpower.results.useful_voltage import UsefulVoltage
+from tractionpower.results.useful_voltage import Means, UsefulVoltage
 from tractionpower.results.windows import TrainWindows
 
 Floats = NDArray[np.float64]
@@ -271,6 +271,7 @@ class TrainRecorder:
 
     def figures(self, end_s: float) -> Iterator[KeyFigure]:
         """Yield the key figures of all trains that have rows, and of all zones."""
+        useful, zones = self.useful.of_trains(), self.useful.of_zones()
         for k, planned in enumerate(self.movement.runs):
             if not self.seen[k]:
                 continue
@@ -288,19 +289,17 @@ class TrainRecorder:
                 )
             )  # fmt: skip
             late = late_at_end(call_rows(self.names[k], calls, planned.route_m), end_s)
-            yield from supply_figures(self._supply(k, sums, late))
-        for name, weighted, mean in zip(
-            self.places.zones, self.useful.zone_current_weighted_v, self.useful.zone_time_mean_v, strict=True
-        ):
+            yield from supply_figures(self._supply(k, sums, late, useful))
+        for name, weighted, mean in zip(self.places.zones, zones.current_weighted_v, zones.time_mean_v, strict=True):
             yield from useful_figures(f"zone {name}", float(weighted), float(mean))
 
-    def _supply(self, k: int, sums: dict[str, float], late_s: float) -> SupplySummary:
+    def _supply(self, k: int, sums: dict[str, float], late_s: float, useful: Means) -> SupplySummary:
         window = self.ten_seconds
         return SupplySummary(
             self.names[k], sums["auxiliaries"], sums["drive_loss"], sums["starting_resistors"], sums["refused"],
             float(self.lowest_v.value[k]), float(self.lowest_v.time_s[k]),
             float(window.best[0, k]), float(window.best_from_s[0, k]),
-            float(self.useful.train_current_weighted_v[k]), float(self.useful.train_time_mean_v[k]), late_s,
+            float(useful.current_weighted_v[k]), float(useful.time_mean_v[k]), late_s,
         )  # fmt: skip
 
 

@@ -97,11 +97,12 @@ class VoltageVerdicts:
         trains = self.trains
         zones = [f"zone {zone}" for zone in trains.places.zones]
         names = [f"train {name}" for name in trains.names]
+        of_trains, of_zones = trains.useful.of_trains(), trains.useful.of_zones()
         rows = {
-            "mean useful voltage of trains, current-weighted": (names, trains.useful.train_current_weighted_v),
-            "mean useful voltage of trains, time mean": (names, trains.useful.train_time_mean_v),
-            "mean useful voltage of zones, current-weighted": (zones, trains.useful.zone_current_weighted_v),
-            "mean useful voltage of zones, time mean": (zones, trains.useful.zone_time_mean_v),
+            "mean useful voltage of trains, current-weighted": (names, of_trains.current_weighted_v),
+            "mean useful voltage of trains, time mean": (names, of_trains.time_mean_v),
+            "mean useful voltage of zones, current-weighted": (zones, of_zones.current_weighted_v),
+            "mean useful voltage of zones, time mean": (zones, of_zones.time_mean_v),
         }
         for title, (places, volts) in rows.items():
             if np.isfinite(volts).any():

@@ -13,8 +13,12 @@ _KIND = column(
 _USE = (
     column("window_s", "Length of the sliding window; 0: the whole run.", "f8"),
     column("load_a", "Highest sliding root mean square of the current over the window."),
-    column("permitted_a", "Current that the rating permits over the window; empty without a rating."),
-    column("utilisation_percent", "load_a of permitted_a; empty without a rating."),
+    column(
+        "permitted_a",
+        "Current that the rating permits over the window, with the overload that is permitted until a reserve unit feeds;"
+        " empty without a rating.",
+    ),
+    column("utilisation_percent", "load_a of permitted_a; 1000000 of a device that may carry nothing; empty without a rating."),
     column("from_s", "Start of that window, seconds after midnight.", "f8"),
 )
 

@@ -18,8 +18,6 @@ from tractionpower.kernels.sums import add_by_group
 Array = NDArray[np.float64]
 Numbers = NDArray[np.integer[Any]]
 
-_TIME, _VOLTAGE, _CHARGE, _ENERGY = range(4)
-
 
 class Means(NamedTuple):
     """Mean useful voltages of trains or zones by both definitions, and of how many trains; all of one length.
@@ -86,64 +84,43 @@ class UsefulVoltage:
         add_by_group(self._tractive, pulling, np.stack([weight[pulls], volt_seconds[pulls]], axis=1))
 
     def of_trains(self, shortest_stay_s: float = 0.0) -> Means:
-        """Return the means of all trains that were there for `shortest_stay_s` at least [s]."""
+        """Return the means of all trains that were there for `shortest_stay_s` at least [s].
+
+        Current-weighted: sum U |I| dt over sum |I| dt. Time mean: mean voltage of the steps with traction effort.
+        """
         time_s, _, charge, energy = self._table.sum(axis=1).T
         counts = _stays(time_s, shortest_stay_s)
         weighted = np.where(counts, _ratio(energy, charge), np.nan)
         mean = np.where(counts, _ratio(self._tractive[:, 1], self._tractive[:, 0]), np.nan)
         return Means(weighted, mean, counts.astype(np.int64), ((time_s > 0.0) & ~counts).astype(np.int64))
 
-    def of_zones(self, zones: Sequence[NDArray[np.integer[Any]]], shortest_stay_s: float = 0.0) -> Means:
-        """Return the means of zones that are put together of those that were counted.
+    def of_zones(self, zones: Sequence[NDArray[np.integer[Any]]] | None = None, shortest_stay_s: float = 0.0) -> Means:
+        """Return the means of zones, or of zones that are put together of those that were counted.
+
+        Current-weighted: sum_j (1/T_j) int U_j |I_j| dt over sum_j (1/T_j) int |I_j| dt, where T_j is the time that train j
+        spent in the zone: every train counts by its mean current there, a slow one no more than a fast one. Time mean: mean
+        voltage of all trains and steps in it, with and without traction effort.
 
         Parameters
         ----------
         zones
-            Of each the numbers of the zones that it is made of.
+            Of each the numbers of the zones that it is made of; left out: each by itself.
         shortest_stay_s
             A train that was in it for less time [s] does not count there.
         """
-        found = [self._of_zone(np.asarray(parts, np.int64), shortest_stay_s) for parts in zones]
+        alone = [np.array([k]) for k in range(self._shape[1] - 1)]
+        found = [self._of_zone(np.asarray(parts, np.int64), shortest_stay_s) for parts in (alone if zones is None else zones)]
         rows = np.array(found, float).reshape(len(found), 4)
         return Means(rows[:, 0], rows[:, 1], rows[:, 2].astype(np.int64), rows[:, 3].astype(np.int64))
 
     def _of_zone(self, parts: NDArray[np.int64], shortest_stay_s: float) -> tuple[float, float, int, int]:
         time_s, voltage, charge, energy = self._table[:, parts].sum(axis=1).T
         counts = _stays(time_s, shortest_stay_s)
-        # Every train counts by its mean current in the zone, as in `zone_current_weighted_v`.
         shares = np.where(counts, _ratio(np.ones(time_s.shape), time_s, without=0.0), 0.0)
         weighted, mean = _ratio(
             np.array([(shares * energy).sum(), voltage[counts].sum()]), np.array([(shares * charge).sum(), time_s[counts].sum()])
         )
         return float(weighted), float(mean), int(counts.sum()), int(((time_s > 0.0) & ~counts).sum())
-
-    @property
-    def train_current_weighted_v(self) -> Array:
-        """Of each train, sum U |I| dt over sum |I| dt [V]; NaN without current."""
-        sums = self._table.sum(axis=1)
-        return _ratio(sums[:, _ENERGY], sums[:, _CHARGE])
-
-    @property
-    def train_time_mean_v(self) -> Array:
-        """Of each train, mean voltage of the steps with traction effort [V]; NaN without one."""
-        return _ratio(self._tractive[:, 1], self._tractive[:, 0])
-
-    @property
-    def zone_current_weighted_v(self) -> Array:
-        """Of each zone, sum_j (1/T_j) int U_j |I_j| dt over sum_j (1/T_j) int |I_j| dt [V]; NaN without current.
-
-        T_j is the time that train j spent in the zone: every train counts by its mean current there, a slow one no more
-        than a fast one.
-        """
-        time_s = self._table[:, :-1, _TIME]
-        shares = _ratio(np.ones(time_s.shape), time_s, without=0.0)
-        totals = [(shares * self._table[:, :-1, sums]).sum(axis=0) for sums in (_ENERGY, _CHARGE)]
-        return _ratio(*totals)
-
-    @property
-    def zone_time_mean_v(self) -> Array:
-        """Of each zone, mean voltage of all trains and steps in it, with and without traction effort [V]; NaN without any."""
-        return _ratio(*(self._table[:, :-1, sums].sum(axis=0) for sums in (_VOLTAGE, _TIME)))
 
     @property
     def _table(self) -> Array:
