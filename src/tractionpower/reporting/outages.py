@@ -47,6 +47,8 @@ _OF = {
     "lowest_voltage_v": "",
     "useful_zone_v": "zone {useful_zone}",
     "useful_train_v": "train {useful_train}",
+    "useful_zone_time_mean_v": "zone {useful_zone_time_mean}",
+    "useful_train_time_mean_v": "train {useful_train_time_mean}",
     "utilisation_percent": "{utilisation_device}",
     "worst_late_s": "train {worst_late_train}",
 }

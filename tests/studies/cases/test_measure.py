@@ -76,6 +76,13 @@ def test_rail_potentials_and_useful_voltages_are_those_of_the_whole_run(busy_cou
     trains = {place: value for place, value in useful.items() if place.startswith("train ")}
     assert case.figures["useful_train_v"] == pytest.approx(min(trains.values()), rel=1e-12)
     assert f"train {case.figures['useful_train']}" == min(trains, key=lambda place: trains[place])
+    means = {place: value for (name, place), value in figures.items() if name == "mean_useful_voltage_time_mean_v"}
+    of_zones = {place: value for place, value in means.items() if place.startswith("zone ")}
+    of_trains = {place: value for place, value in means.items() if place.startswith("train ")}
+    for kind, known in (("zone", of_zones), ("train", of_trains)):
+        assert case.figures[f"useful_{kind}_time_mean_v"] == pytest.approx(min(known.values()), rel=1e-12)
+        assert f"{kind} {case.figures[f'useful_{kind}_time_mean']}" == min(known, key=lambda place: known[place])
+    assert case.figures["useful_train_time_mean_v"] != case.figures["useful_train_v"]
 
 
 @pytest.fixture(scope="module")

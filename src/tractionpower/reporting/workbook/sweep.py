@@ -29,6 +29,8 @@ PLACES = {
     "lowest_voltage_v": (("lowest_voltage_track", "beside"), ("lowest_voltage_km", "0.0"), ("lowest_voltage_s", "time")),
     "useful_zone_v": (("useful_zone", "beside"),),
     "useful_train_v": (("useful_train", "beside"),),
+    "useful_zone_time_mean_v": (("useful_zone_time_mean", "beside"),),
+    "useful_train_time_mean_v": (("useful_train_time_mean", "beside"),),
     "worst_late_s": (("worst_late_train", "beside"),),
     "utilisation_percent": (("utilisation_device", "beside"),),
 }

@@ -74,10 +74,10 @@ def _where(figure: str, row: Row) -> str:
     match figure:
         case "lowest_voltage_v":
             return f"track {row['lowest_voltage_track']}, km {row['lowest_voltage_km']:.2f}"
-        case "useful_zone_v":
-            return f"zone {row['useful_zone']}"
-        case "useful_train_v":
-            return f"train {row['useful_train']}"
+        case "useful_zone_v" | "useful_zone_time_mean_v":
+            return f"zone {row[figure.removesuffix('_v')]}"
+        case "useful_train_v" | "useful_train_time_mean_v":
+            return f"train {row[figure.removesuffix('_v')]}"
         case "utilisation_percent":
             return str(row["utilisation_device"])
         case "worst_late_s":
@@ -94,6 +94,8 @@ def checks_of(scenario: Scenario) -> tuple[Check, ...]:
         ("high voltage", "highest voltage", "highest_voltage_v", "u_max2", False),
         ("useful voltage", "mean useful voltage of zones, current-weighted", "useful_zone_v", useful, True),
         ("useful voltage", "mean useful voltage of trains, current-weighted", "useful_train_v", useful, True),
+        ("useful voltage", "mean useful voltage of zones, time mean", "useful_zone_time_mean_v", useful, True),
+        ("useful voltage", "mean useful voltage of trains, time mean", "useful_train_time_mean_v", useful, True),
     ]
     found = [
         Check(word, name, figure, "V", key, limits[key].value, limits[key].source, limits[key].status, is_floor, TOLERANCE_V)

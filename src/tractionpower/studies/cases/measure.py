@@ -97,24 +97,28 @@ class CaseWatch:
     def figures(self) -> dict[str, Any]:
         """Return the key figures of voltages, rail potentials and energies."""
         lowest, greatest = self.voltages.lowest, self.rails.greatest
-        means = self._useful.means()[0]
-        zone, train = self._useful.lowest("zone", means=means), self._useful.lowest("train", means=means)
         return {
             "lowest_voltage_v": lowest[0],
             "lowest_voltage_track": lowest[1],
             "lowest_voltage_km": lowest[2],
             "lowest_voltage_s": lowest[3],
             "highest_voltage_v": float(self.voltages.highest_v),
-            "useful_zone_v": zone.value_v,
-            "useful_zone": zone.subject,
-            "useful_train_v": train.value_v,
-            "useful_train": train.subject,
+            **self._useful_voltages(),
             "rail_potential_v": greatest[0],
             "rail_potential_km": greatest[1],
             "energy_kwh": self.energy.busbar_kwh,
             "line_loss_kwh": self.energy.line_loss_kwh,
             "highest_demand_kw": self.energy.highest_demand_kw,
         }
+
+    def _useful_voltages(self) -> dict[str, Any]:
+        """Return the lowest mean useful voltage of zones and of trains by both definitions, and of which it is."""
+        means, found = self._useful.means()[0], {}
+        for more, definition in (("", "current_weighted_v"), ("_time_mean", "time_mean_v")):
+            for kind in ("zone", "train"):
+                lowest = self._useful.lowest(kind, definition, means)
+                found |= {f"useful_{kind}{more}_v": lowest.value_v, f"useful_{kind}{more}": lowest.subject}
+        return found
 
 
 def _status(run: QuietRun, watch: CaseWatch) -> dict[str, str]:

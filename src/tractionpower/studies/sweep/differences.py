@@ -16,7 +16,13 @@ FIGURES = tuple(
 )
 """Figures of a case that are compared."""
 
-HIGHER_IS_BETTER = ("lowest_voltage_v", "useful_zone_v", "useful_train_v")
+HIGHER_IS_BETTER = (
+    "lowest_voltage_v",
+    "useful_zone_v",
+    "useful_train_v",
+    "useful_zone_time_mean_v",
+    "useful_train_time_mean_v",
+)
 """Of others less is better: demand, losses, utilisation, lateness."""
 
 NOT_JUDGED = ("energy_kwh",)
