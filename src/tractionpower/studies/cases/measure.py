@@ -113,7 +113,8 @@ class CaseWatch:
 
     def _useful_voltages(self) -> dict[str, Any]:
         """Return the lowest mean useful voltage of zones and of trains by both definitions, and of which it is."""
-        means, found = self._useful.means()[0], {}
+        means = self._useful.means()[0]
+        found: dict[str, Any] = {}
         for more, definition in (("", "current_weighted_v"), ("_time_mean", "time_mean_v")):
             for kind in ("zone", "train"):
                 lowest = self._useful.lowest(kind, definition, means)
