@@ -27,13 +27,12 @@ from tractionpower.model.drive import (
 )
 from tractionpower.model.limits import Limit, overlay
 from tractionpower.model.line import Connection, Curve, Gradient, Line, SpeedLimit, Station, Track, TrackPoint
+from tractionpower.model.loads import Load, LoadPoint
 from tractionpower.model.ratings import DutyRow, RectifierUnit, duty_of, overlay_duty, overlay_units
 from tractionpower.model.scenario import Clock, Output, Scenario
 from tractionpower.model.sizing import Sizing, SizingSearch, UsefulVoltageStudy, Window, Zone
 from tractionpower.model.supply import (
     ContactLine,
-    Load,
-    LoadPoint,
     ReturnCircuit,
     SectionCabin,
     SectionPoint,

@@ -13,7 +13,7 @@ def test_every_column_has_a_meaning_and_its_unit_in_its_name(table):
         unit = field.metadata[b"unit"].decode()
         assert field.metadata[b"meaning"].decode().endswith(".")
         spelled = {"km/h": "kmh", "m/s²": "mps2", "%": "percent"}.get(unit, unit.lower().replace("/", "_per_"))
-        assert field.name.endswith(f"_{spelled}") or unit in {"", "-", "km"}
+        assert f"_{field.name}".endswith(f"_{spelled}") or unit in {"", "-", "km"}
 
 
 def test_devices_change_fastest():

@@ -234,7 +234,9 @@ def test_a_killed_call_goes_on_and_repeats_nothing(tmp_path, workers):
 @pytest.mark.skipif(sys.platform == "win32", reason="a test cannot press Ctrl-C of another console there")
 def test_ctrl_c_ends_workers_and_tells_what_has_ended(tmp_path):
     store = CaseStore(tmp_path)
-    with start_script(tmp_path, 2, 0.3, start_new_session=True) as process:
+    # What is started in the background of a shell ignores Ctrl-C.
+    ready = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
+    with start_script(tmp_path, 2, 0.3, start_new_session=True, preexec_fn=ready) as process:
         wait_for(lambda: len(list(store.keys())) >= 3)
         os.killpg(process.pid, signal.SIGINT)
         out, err = process.communicate(timeout=30)
