@@ -38,6 +38,7 @@ def measure_load(scenario: Scenario, rows: int = 3) -> CaseResult:
             "train": ["a", "b"],
             "late_s": [power, None],
             "added_late_s": pa.array([None, None], pa.float32()),
+            "finished_s": pa.array([600.0, None], pa.float64()),
             "status": ["late", "on time"],
         }
     )

@@ -30,11 +30,14 @@ class TrainLateness(NamedTuple):
         Whether it stands at the end of the run for want of effort or power.
     dark
         Whether it is on a dead contact line then.
+    finished_s
+        When it left the line or came to stay [s after midnight]; NaN: not within the clock.
     """
 
     late_s: float
     holds: bool
     dark: bool
+    finished_s: float = NAN
 
 
 def lateness_of(run: QuietRun) -> dict[str, TrainLateness]:
@@ -52,5 +55,6 @@ def lateness_of(run: QuietRun) -> dict[str, TrainLateness]:
         mover = state.movers[k]
         on_line = mover["status"] not in (OUTSIDE, GONE, STAYING)
         holds, dark = bool(mover["held_s"] >= STUCK_S), bool(np.isfinite(mover["lost_s"]))
-        found[planned.run.id] = TrainLateness(max(late, default=NAN), on_line and holds, on_line and dark)
+        finished_s = float(mover["finished_s"])
+        found[planned.run.id] = TrainLateness(max(late, default=NAN), on_line and holds, on_line and dark, finished_s)
     return found

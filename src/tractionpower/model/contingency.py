@@ -46,8 +46,8 @@ class Contingency(Declaration):
     )
     begins: TimeOfDay | None = Field(
         default=None,
-        description="Time of day at which outages begin; left out: with the clock, and those of"
-        " units that a reserve replaces after the warm-up.",
+        description="Time of day at which outages begin; left out: with the clock, and those of units that a reserve replaces"
+        " when the units carry most, with nothing out, over the time until the reserve feeds.",
     )
 
     @model_validator(mode="after")

@@ -50,6 +50,8 @@ _OF = {
     "useful_zone_time_mean_v": "zone {useful_zone_time_mean}",
     "useful_train_time_mean_v": "train {useful_train_time_mean}",
     "utilisation_percent": "{utilisation_device}",
+    "contract_share_percent": "supply point {contract_point}",
+    "breaker_share_percent": "{breaker_device}",
     "worst_late_s": "train {worst_late_train}",
 }
 """Of what the figure of a case is, in words."""

@@ -1,5 +1,7 @@
 """Cases against limits: what is violated, by how much it may be missed, and which case is the worst."""
 
+import math
+
 import pytest
 from small_studies import make_scenario
 
@@ -24,13 +26,23 @@ CHECKS = checks_of(make_scenario())
         ("useful_train_v", 2699.91, 2699.89, "useful voltage"),
         ("utilisation_percent", 100.0, 100.01, "overload"),
         ("worst_late_s", 1.0, 1.01, "late trains"),
+        ("useful_zone_time_mean_v", 2699.91, 2699.89, "useful voltage"),
+        ("useful_train_time_mean_v", 2699.91, 2699.89, "useful voltage"),
+        ("above_u_max1_s", 300.0, 300.01, "high voltage"),
+        ("contract_share_percent", 100.0, 100.01, "contract"),
+        ("breaker_share_percent", 100.0, 100.01, "breaker"),
+        ("trips", 0, 1, "tripped breakers"),
         ("stuck_trains", 0, 1, "stuck trains"),
+        ("dark_trains", 0, 1, "trains without voltage"),
+        ("unfinished_trains", 0, 1, "unfinished trains"),
+        ("unserved_loads", 0, 1, "loads without voltage"),
+        ("blackout_s", 0.0, 0.5, "nothing fed"),
     ],
 )
 def test_each_limit(figure, kept, missed, word):
     assert failures(CHECKS, GOOD | {figure: kept}) == ()
     assert failures(CHECKS, GOOD | {figure: missed}) == (word,)
-    assert failures(CHECKS, GOOD | {figure: None}) == ()
+    assert failures(CHECKS, GOOD | {figure: None}) == failures(CHECKS, GOOD | {figure: math.nan}) == ()
 
 
 def test_the_verdict_is_on_the_worst_case():

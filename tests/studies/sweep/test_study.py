@@ -129,3 +129,21 @@ def test_trains_of_a_case_know_what_was_added_to_their_lateness(tmp_path):
     base = trains[trains["case"] == "base"]
     assert (base["added_late_s"].isna() | (base["added_late_s"] == 0.0)).all()
     assert CaseStore().folder is None
+
+
+def test_a_variant_of_a_limit_is_judged_by_its_own_limit():
+    plants = [{"id": name, "km": km, "no_load_voltage_v": 3600.0, "internal_resistance_ohm": 0.12, "rated_current_a": 1000.0}
+              for name, km in (("A", 0.0), ("B", 20.0))]  # fmt: skip
+    scenario = make_scenario(load("tap", 4.0), substations=plants)
+    used = float(sweep(scenario, {R: [0.12]}).table("cases")["utilisation_percent"].iloc[0])
+    assert 50.0 < used < 100.0
+    low, high = round(used - 10.0), round(used + 10.0)
+    results = sweep(scenario, {"sizing.utilisation_percent": [low, high]})
+    cases = results.table("cases").set_index("case").astype({"fails": str})
+    assert dict(cases["fails"]) == {"base": "", "01": "overload", "02": ""}
+    told = next(each for each in results.run["verdicts"] if each["name"] == "utilisation of devices")
+    assert (told["met"], told["limit_value"], told["place"]) == (False, low, "01: A unit")
+    generous = sweep(change(scenario, [f"sizing.utilisation_percent={low}"]), {"sizing.utilisation_percent": [high]})
+    told = next(each for each in generous.run["verdicts"] if each["name"] == "utilisation of devices")
+    assert (told["met"], told["limit_value"], told["place"]) == (False, low, "base: A unit")
+    assert list(generous.table("cases").astype({"fails": str})["fails"]) == ["overload", ""]

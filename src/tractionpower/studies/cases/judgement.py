@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from tractionpower.model.base import format_time
-from tractionpower.model.limits import USEFUL_NAMES, common_limits
+from tractionpower.model.limits import USEFUL_NAMES, common_limits, find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.spells import TOLERANCE_V
 from tractionpower.supply.ratings import Rating
@@ -46,17 +47,15 @@ class Check:
     tolerance: float = 0.0
 
     def is_met(self, row: Row) -> bool:
-        """Return whether a case keeps the limit; what has no value violates none."""
+        """Return whether a case keeps the limit; what has no value violates none: what is not served has figures of its own."""
+        return not self.beyond(row) > self.tolerance
+
+    def beyond(self, row: Row) -> float:
+        """Return by how much a case is beyond the limit, negative within it; NaN for one without a value."""
         found = row.get(self.figure)
         if found is None:
-            return True
-        return bool(found >= self.value - self.tolerance if self.is_floor else found <= self.value + self.tolerance)
-
-    def worst(self, rows: Iterable[Row]) -> Row | None:
-        """Return the case that is nearest to the limit or furthest beyond it, the first of equals; None if none has a value."""
-        known = [row for row in rows if row.get(self.figure) is not None]
-        sign = 1.0 if self.is_floor else -1.0
-        return min(known, key=lambda row: sign * row[self.figure], default=None)
+            return math.nan
+        return float(self.value - found if self.is_floor else found - self.value)
 
     def verdict(self, row: Row) -> dict[str, Any]:
         """Return a verdict as ``run.json`` has it, on a case."""
@@ -69,20 +68,23 @@ class Check:
         }  # fmt: skip
 
 
+_OF = {
+    "lowest_voltage_v": "track {lowest_voltage_track}, km {lowest_voltage_km:.2f}",
+    "useful_zone_v": "zone {useful_zone}",
+    "useful_train_v": "train {useful_train}",
+    "useful_zone_time_mean_v": "zone {useful_zone_time_mean}",
+    "useful_train_time_mean_v": "train {useful_train_time_mean}",
+    "utilisation_percent": "{utilisation_device}",
+    "contract_share_percent": "supply point {contract_point}",
+    "breaker_share_percent": "{breaker_device}",
+}
+
+
 def _where(figure: str, row: Row) -> str:
     """Return in words where or of what a figure of a case is."""
-    match figure:
-        case "lowest_voltage_v":
-            return f"track {row['lowest_voltage_track']}, km {row['lowest_voltage_km']:.2f}"
-        case "useful_zone_v" | "useful_zone_time_mean_v":
-            return f"zone {row[figure.removesuffix('_v')]}"
-        case "useful_train_v" | "useful_train_time_mean_v":
-            return f"train {row[figure.removesuffix('_v')]}"
-        case "utilisation_percent":
-            return str(row["utilisation_device"])
-        case "worst_late_s":
-            return f"train {row['worst_late_train']}" if row["worst_late_train"] else ""
-    return ""
+    if figure == "worst_late_s":
+        return f"train {row['worst_late_train']}" if row["worst_late_train"] else ""
+    return _OF.get(figure, "").format(**row)
 
 
 def checks_of(scenario: Scenario) -> tuple[Check, ...]:
@@ -102,14 +104,45 @@ def checks_of(scenario: Scenario) -> tuple[Check, ...]:
         for word, name, figure, key, is_floor in volts
         if key in limits
     ]
-    allowed, tolerance = scenario.sizing.utilisation_percent, scenario.feasibility.tolerance_s
-    user = "user"
-    return (
-        *found,
-        Check("overload", "utilisation of devices", "utilisation_percent", "%", "utilisation_percent", allowed, "study", user),
-        Check("late trains", "lateness at calls", "worst_late_s", "s", "tolerance_s", tolerance, "study", user),
-        Check("stuck trains", "trains that stand for good", "stuck_trains", "", "stuck_trains", 0.0, "study", user),
-    )
+    longest = find_limit(scenario.limits, scenario.supply.system, "t_max2")
+    if longest is not None:
+        known = longest.name, longest.value, longest.source, longest.status
+        found.append(Check("high voltage", "longest spell above U_max1", "above_u_max1_s", "s", *known))
+    return (*found, *_study_checks(scenario), *_NOT_SERVED)
+
+
+def _study_checks(scenario: Scenario) -> Iterator[Check]:
+    """Yield what the study itself permits."""
+    sizing, tolerance_s = scenario.sizing, scenario.feasibility.tolerance_s
+    allowed = sizing.utilisation_percent
+    for word, name, figure, limit, value, source in (
+        ("overload", "utilisation of devices", "utilisation_percent", "utilisation_percent", allowed, "study"),
+        ("contract", DEMAND, "contract_share_percent", "contract_power_kw", 100.0, "contracts of the inputs"),
+        ("breaker", PEAK, "breaker_share_percent", "breaker_percent", sizing.breaker_percent, "settings of the inputs"),
+    ):
+        yield Check(word, name, figure, "%", limit, value, source, "user", tolerance=ROUNDING * value)
+    yield Check("late trains", "lateness at calls", "worst_late_s", "s", "tolerance_s", tolerance_s, "study", "user")
+
+
+def _none(word: str, name: str, figure: str, unit: str = "") -> Check:
+    """Return a check of what must not be."""
+    return Check(word, name, figure, unit, figure, 0.0, "study", "user")
+
+
+DEMAND = "highest demand of a quarter of an hour, of the contract"
+PEAK = "peak of feeders, of the setting of the breaker"
+
+ROUNDING = 1e-9
+"""Share by which a share may be beyond what is permitted, as in `studies.ratings.use`."""
+
+_NOT_SERVED = (
+    _none("tripped breakers", "trips of breakers", "trips"),
+    _none("stuck trains", "trains that stand for good", "stuck_trains"),
+    _none("trains without voltage", "trains without a voltage for longer than they coast", "dark_trains"),
+    _none("unfinished trains", "trains that do not end their run though they do in the base case", "unfinished_trains"),
+    _none("loads without voltage", "loads without a voltage while they should take something", "unserved_loads"),
+    _none("nothing fed", "time in which nothing at all is fed", "blackout_s", "s"),
+)
 
 
 def failures(checks: Sequence[Check], row: Row) -> tuple[str, ...]:
@@ -118,15 +151,29 @@ def failures(checks: Sequence[Check], row: Row) -> tuple[str, ...]:
 
 
 def verdicts(checks: Sequence[Check], rows: Sequence[Row], ratings: Mapping[str, Rating] | None = None) -> list[dict[str, Any]]:
-    """Return the verdict on each limit by the case that is worst for it.
+    """Return the verdict on each limit by the case that is worst for it: nearest to the limit, or furthest beyond it.
 
     With `ratings`, by device, the verdict on devices has the source and the status of the rating that rules it.
     """
+    return own_verdicts([(checks, row) for row in rows], ratings)
+
+
+def own_verdicts(
+    judged: Iterable[tuple[Sequence[Check], Row]], ratings: Mapping[str, Rating] | None = None
+) -> list[dict[str, Any]]:
+    """Return the same where each case has limits of its own.
+
+    The worst case is that which is furthest beyond its own limit, as a share of it; of equal ones the first.
+    """
+    worst: dict[str, tuple[float, Check, Row] | None] = {}
+    for checks, row in judged:
+        for check in checks:
+            known, beyond = worst.setdefault(check.name, None), check.beyond(row) / (abs(check.value) or 1.0)
+            if not math.isnan(beyond) and (known is None or beyond > known[0]):
+                worst[check.name] = beyond, check, row
     found = []
-    for check in checks:
-        row = check.worst(rows)
-        if row is not None:
-            rating = (ratings or {}).get(row["utilisation_device"]) if check.figure == "utilisation_percent" else None
-            said = {} if rating is None else {"source": rating.source, "status": rating.status}
-            found.append(check.verdict(row) | said)
+    for _, check, row in filter(None, worst.values()):
+        rating = (ratings or {}).get(row["utilisation_device"]) if check.figure == "utilisation_percent" else None
+        said = {} if rating is None else {"source": rating.source, "status": rating.status}
+        found.append(check.verdict(row) | said)
     return found

@@ -21,7 +21,10 @@ from tractionpower.kernels.block_tables import Buffers, take_rows
 from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.studies.cases.devices import device_figures, device_uses, devices_table
 from tractionpower.studies.cases.energy import EnergyWatch
+from tractionpower.studies.cases.grants import GrantWatch
+from tractionpower.studies.cases.judgement import checks_of, failures
 from tractionpower.studies.cases.rails import RailWatch
+from tractionpower.studies.cases.served import ServiceWatch
 from tractionpower.studies.cases.voltages import VoltageWatch, case_table, coded
 from tractionpower.studies.runner.case import CaseResult
 from tractionpower.supply.compile import SupplyTables
@@ -42,13 +45,15 @@ def measure(scenario: Scenario) -> CaseResult:
     run = QuietRun(scenario)
     watch = CaseWatch(run)
     devices = DeviceRecorder(scenario, run.compiled.supply, windows_s=())
-    run.watches += [watch, devices]
+    grants = GrantWatch(scenario, run.compiled.supply)
+    run.watches += [watch, devices, *grants.watches]
     run.execute()
     late = lateness_of(run)
     figures = {**_status(run, watch), **watch.figures(), **_train_figures(late, scenario.feasibility.tolerance_s)}
-    figures |= {"trips": _trips(run), "flagged_steps": run.flagged_steps}
+    figures |= {"trips": _trips(run), "flagged_steps": run.flagged_steps, **grants.figures()}
     used = device_uses(scenario, devices)
     figures |= device_figures(used)
+    figures["fails"] = ", ".join(failures(checks_of(scenario), figures))
     tables = {
         "case_devices": devices_table(used, devices),
         "case_profile": watch.voltages.profile(),
@@ -68,7 +73,7 @@ class CaseWatch:
 
     Attributes
     ----------
-    voltages, rails, energy
+    voltages, rails, energy, served
         What was found of each.
     """
 
@@ -77,8 +82,9 @@ class CaseWatch:
         clock = scenario.clock
         self._from_s = clock.counts_from_s
         self._places = Places(scenario, run.movement)
-        self.voltages, self.rails = VoltageWatch(supply, self._places), RailWatch(supply, self._places)
-        self.energy = EnergyWatch(scenario, supply)
+        self.voltages = VoltageWatch(supply, self._places, clock, len(run.movement.runs))
+        self.rails = RailWatch(supply, self._places)
+        self.energy, self.served = EnergyWatch(clock.step_s), ServiceWatch(run)
         self._useful = UsefulVoltageRecorder(scenario, run.movement, self._places, whole_run_only=True)
 
     def __call__(self, time_s: Floats, rows: Buffers, supply: SupplyTables) -> None:
@@ -91,7 +97,8 @@ class CaseWatch:
         placed = self._places.place(trains["train"], trains["s_m"])
         self.voltages.add(time_s, rows, supply, placed)
         self.rails.add(rows, placed)
-        self.energy.add(time_s, rows, supply)
+        self.energy.add(rows)
+        self.served.add(time_s, rows, supply)
         self._useful.add(trains, placed)
 
     def figures(self) -> dict[str, Any]:
@@ -104,11 +111,12 @@ class CaseWatch:
             "lowest_voltage_s": lowest[3],
             "highest_voltage_v": float(self.voltages.highest_v),
             **self._useful_voltages(),
+            "above_u_max1_s": self.voltages.above_u_max1_s,
             "rail_potential_v": greatest[0],
             "rail_potential_km": greatest[1],
             "energy_kwh": self.energy.busbar_kwh,
             "line_loss_kwh": self.energy.line_loss_kwh,
-            "highest_demand_kw": self.energy.highest_demand_kw,
+            **self.served.figures(),
         }
 
     def _useful_voltages(self) -> dict[str, Any]:
@@ -159,6 +167,7 @@ def trains_table(late: dict[str, TrainLateness], tolerance_s: float) -> pa.Table
             "train": coded(names),
             "late_s": [late[k].late_s for k in names],
             "added_late_s": np.full(len(names), NAN),
+            "finished_s": [late[k].finished_s for k in names],
             "status": coded(status),
         },
     )

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from tractionpower.cosimulation.places import BIN_KM, Placed, Places
 from tractionpower.kernels.block_tables import Buffers
+from tractionpower.model.scenario import Clock
+from tractionpower.results.spells import TrainSpells
 from tractionpower.results.tables import make_table
 from tractionpower.supply.compile import SupplyTables
 
@@ -29,6 +31,8 @@ class VoltageWatch:
         What runs.
     places
         Where trains are.
+    clock, trains
+        Of the run: its clock, and the number of trains.
 
     Attributes
     ----------
@@ -38,8 +42,9 @@ class VoltageWatch:
         Highest voltage [V], NaN if there is none.
     """
 
-    def __init__(self, supply: SupplyTables, places: Places) -> None:
-        self._places = places
+    def __init__(self, supply: SupplyTables, places: Places, clock: Clock, trains: int) -> None:
+        self._places, self._step_s = places, clock.step_s
+        self._above = TrainSpells(trains, supply.voltages.u_max1)
         self._fixed = [*supply.sections, *((load.track, load.km) for load in supply.loads)]
         self._fixed_v = np.full(len(self._fixed), np.nan)
         self._bin_v = np.full(places.bins, np.inf)
@@ -51,6 +56,7 @@ class VoltageWatch:
         fed = supply.network.ports["start_v"][supply.load_port] > 0.0
         self._add_fixed(time_s, np.concatenate([rows.section_v, np.where(fed, rows.load_v, np.nan)], axis=1))
         volts = np.ascontiguousarray(rows.trains["voltage_v"])
+        self._above.add(rows.trains["time_s"], rows.trains["train"], volts, self._step_s)
         live = volts != 0.0  # a dead contact line has no voltage that could be low
         if not live.any():
             return
@@ -72,6 +78,11 @@ class VoltageWatch:
         if not lowest[k] >= self.lowest[0]:
             track, km = self._fixed[k]
             self.lowest = (float(lowest[k]), track, km, float(time_s[np.nanargmin(volts[:, k])]))
+
+    @property
+    def above_u_max1_s(self) -> float:
+        """Longest time of a train above U_max1 without a break [s]; NaN without trains."""
+        return float(self._above.longest_s.max(initial=0.0)) if len(self._above.longest_s) else np.nan
 
     def profile(self) -> pa.Table:
         """Return table ``case_profile`` without the column case, by track and kilometre.

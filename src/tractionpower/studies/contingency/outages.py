@@ -15,6 +15,7 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import SectionCabin, Substation
 from tractionpower.studies.contingency.line_sections import LineSection, find_line_sections
 from tractionpower.studies.contingency.moves import Move, Setting, changes_of, grid_changes
+from tractionpower.studies.contingency.reserves import worst_waits
 from tractionpower.studies.runner.case import Case
 from tractionpower.supply.site import survey
 
@@ -35,7 +36,9 @@ class Outage:
     names
         By which a choice of devices may mean it.
     takes
-        What is out with it; two outages of which this overlaps are no pair.
+        What is out with it: where this holds all that another takes, the two are no pair.
+    bridged
+        Feeders that a closed bypass lies across: opening them parts nothing any more.
     """
 
     kind: str
@@ -44,11 +47,22 @@ class Outage:
     moves: tuple[Move, ...]
     names: frozenset[str]
     takes: frozenset[str]
+    bridged: frozenset[str] = frozenset()
 
     @property
     def id(self) -> str:
         """Identifier of its case at normal grid voltage."""
         return f"{self.subject} {self.mode}"
+
+    def contains(self, other: Outage) -> bool:
+        """Return whether all that another takes out is out with it."""
+        return other.takes <= self.takes
+
+    def contradicts(self, other: Outage) -> bool:
+        """Return whether both move a device to different states, or one opens what the other bridges."""
+        mine, its = ({move.device: move.settings for move in outage.moves} for outage in (self, other))
+        differ = any(mine[device] != its[device] for device in mine.keys() & its.keys())
+        return differ or not self.bridged.isdisjoint(its) or not other.bridged.isdisjoint(mine)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +75,13 @@ class OutageList:
         The base cases, then the outages at one grid voltage after the other.
     notes
         What is not looked at, and why.
+    begins
+        When outages of units that a reserve replaces begin, and why then.
     """
 
     cases: tuple[Case, ...]
     notes: tuple[str, ...]
+    begins: tuple[str, ...] = ()
 
 
 def outages(scenario: Scenario, pairs: bool = False) -> tuple[Case, ...]:
@@ -99,9 +116,27 @@ def find_outages(scenario: Scenario, *, pairs: bool = False, grids: Sequence[str
     found += [_case(scenario, (outage,), grid, factors[grid]) for grid in wanted for outage in chosen]
     if pairs:
         of_pairs = wanted if grids is not None or "normal" not in wanted else ["normal"]
-        couples = [pair for pair in combinations(chosen, 2) if pair[0].takes.isdisjoint(pair[1].takes)]
+        couples = _couples(chosen, finder.notes)
         found += [_case(scenario, pair, grid, factors[grid]) for grid in of_pairs for pair in couples]
-    return OutageList(tuple(found), tuple(finder.notes))
+    told = {outage.subject for outage in chosen}
+    return OutageList(tuple(found), tuple(finder.notes), tuple(words for name, words in finder.begins.items() if name in told))
+
+
+def _couples(chosen: Sequence[Outage], notes: list[str]) -> list[tuple[Outage, Outage]]:
+    """Return the pairs of outages that can be out together and are more than one of them alone; note how many are left out."""
+    found, contained, contrary = [], 0, 0
+    for first, second in combinations(chosen, 2):
+        if first.contains(second) or second.contains(first):
+            contained += 1
+        elif first.contradicts(second):
+            contrary += 1
+        else:
+            found.append((first, second))
+    if contained:
+        notes.append(f"{contained} pairs: one outage contains the other")
+    if contrary:
+        notes.append(f"{contrary} pairs: they move a device to different states, or one opens what the other bypasses")
+    return found
 
 
 def _case(scenario: Scenario, out: tuple[Outage, ...], grid: str, factor: float) -> Case:
@@ -169,6 +204,9 @@ class _Finder:
         self.substations = sorted(scenario.supply.substations, key=lambda station: station.id)
         self.cabins = sorted(scenario.supply.section_cabins, key=lambda cabin: cabin.id)
         self.notes: list[str] = []
+        self.begins: dict[str, str] = {}
+        asked = "unit" in scenario.contingency.kinds and self.begins_s is None
+        self._worst_s = worst_waits(scenario) if asked else {}
 
     def every(self) -> Iterator[Outage]:
         """Yield all outages in their order."""
@@ -202,7 +240,7 @@ class _Finder:
                 self._skip("unit", f"{name}: its reserve feeds at once, so nothing changes")
                 return
             yield Outage("unit", name, f"{units - 1} of {units} in service, reserve after {station.reserve_after_s:g} s",
-                         (Move(station.id, self._until_reserve(station, units)),), names, takes)  # fmt: skip
+                         (Move(station.id, self._until_reserve(station, units, name)),), names, takes)  # fmt: skip
             return
         if units == 1:  # no unit is left: the same as a substation whose rectifiers are out
             yield Outage("unit", name, "rectifiers_out", (self._set(station.id, "rectifiers_out"),), names, takes)
@@ -210,22 +248,31 @@ class _Finder:
         move = self._set(station.id, units - 1, "units_in_service")
         yield Outage("unit", name, f"{units - 1} of {units} in service", (move,), names, takes)
 
-    def _until_reserve(self, station: Substation, units: int) -> tuple[Setting, ...]:
-        clock = self.scenario.clock
-        counted_s = clock.counts_from_s  # what passes within the warm-up would not be seen
-        from_s = counted_s if self.begins_s is None else self.begins_s
+    def _until_reserve(self, station: Substation, units: int, name: str) -> tuple[Setting, ...]:
+        """Return what a substation takes while its reserve is awaited; by default in the time that is the worst for it."""
+        from_s, lasts = self.begins_s, f"{station.reserve_after_s:g} s"
+        if from_s is None:
+            from_s = self._worst_s[station.id]
+            why = f"when its units carry most over {lasts} with nothing out, by the root mean square"
+        else:
+            why = "as contingency.begins says"
         again_s = from_s + station.reserve_after_s
+        self.begins[name] = f"{name}: out from {format_time(from_s)}, {why}; its reserve feeds {lasts} later"
         return (from_s, "units_in_service", units - 1), (again_s, "units_in_service", units)
 
     def _station(
         self, kind: str, station: Substation | SectionCabin, modes: Iterable[str], out: Sequence[str]
     ) -> Iterator[Outage]:
-        takes = frozenset({station.id, f"{station.id} unit", *(" ".join((station.id, *key)) for key in self.feeders[station.id])})
+        feeders = frozenset(" ".join((station.id, *key)) for key in self.feeders[station.id])
+        plant = frozenset({station.id, f"{station.id} unit"})
         for mode in modes:
             if station.state in (*out, mode):
                 self._skip(kind, f"{station.id} {mode}: it is {station.state} already")
                 continue
-            yield Outage(kind, station.id, mode, (self._set(station.id, mode),), frozenset({station.id}), takes)
+            takes = plant if mode == "rectifiers_out" else plant | feeders  # rectifiers out: the busbars still join the feeders
+            bridged = feeders if mode == "bypassed" else frozenset[str]()
+            move = self._set(station.id, mode)
+            yield Outage(kind, station.id, mode, (move,), frozenset({station.id}), takes, bridged)
 
     def _feeders(self, station: Substation) -> Iterator[Outage]:
         for key in self.feeders[station.id]:

@@ -22,6 +22,7 @@ from tractionpower.studies.cases.measure import measure
 from tractionpower.studies.contingency.envelope import Delays, DeviceEnvelope, LineEnvelope
 from tractionpower.studies.contingency.outages import find_outages
 from tractionpower.studies.contingency.summary import figures_of, summary_of
+from tractionpower.studies.contingency.unfinished import note_unfinished
 from tractionpower.studies.runner.case import COMPLETE
 from tractionpower.studies.runner.outcomes import CasesRun, write_cases
 from tractionpower.studies.runner.run import Told, run_cases
@@ -50,6 +51,8 @@ class OutageStudy:
         What is run.
     notes
         Outages that are not looked at, and why.
+    begins
+        When outages of units that a reserve replaces begin, and why then.
     warnings
         Warnings of the checks of the base.
 
@@ -73,7 +76,8 @@ class OutageStudy:
         self.warnings: tuple[Problem, ...] = tuple(problems)
         self.scenario, self.study = scenario, study
         self._library = shipped_library() if library is None else library
-        self.cases, self.notes = (found := find_outages(scenario, pairs=pairs, grids=grids)).cases, found.notes
+        found = find_outages(scenario, pairs=pairs, grids=grids)
+        self.cases, self.notes, self.begins = found.cases, found.notes, found.begins
 
     def execute(
         self,
@@ -91,6 +95,7 @@ class OutageStudy:
         # Which outages are looked at changes none of them: with other choices they are found in the store again.
         base = self.scenario.model_copy(update={"contingency": Contingency()})
         run = run_cases(base, self._library, self.cases, measure, store, workers=workers, scheduler=scheduler, progress=progress)
+        note_unfinished(self.scenario, checks_of(self.scenario), run)
         line, devices, delays = LineEnvelope(), DeviceEnvelope(), Delays()
         completed = {"case_profile": line.add_profile, "case_rails": line.add_rails, "case_devices": devices.add,
                      "case_trains": delays.add}  # fmt: skip
@@ -132,7 +137,7 @@ class OutageOutcome:
             "scheduler": scheduler,
             "cases": cases.counts(),
             "verdicts": said,
-            "contingency": summary_of(scenario, checks, cases, devices, ratings, study.notes),
+            "contingency": summary_of(scenario, checks, cases, devices, ratings, study.notes) | {"begins": list(study.begins)},
         }
         self.key_figures = figures_of(checks, said, cases.rows)
 

@@ -11,6 +11,7 @@ from tractionpower.results.key_figures import KeyFigure
 from tractionpower.studies.cases.judgement import Check, failures
 from tractionpower.studies.contingency.envelope import DeviceEnvelope
 from tractionpower.studies.contingency.outages import BASE, GRIDS
+from tractionpower.studies.runner.case import COMPLETE
 from tractionpower.studies.runner.outcomes import CasesRun
 from tractionpower.supply.ratings import Rating
 
@@ -23,7 +24,9 @@ MOST_TOLD = 30
 
 FIGURES = ("lowest_voltage_v", "lowest_voltage_track", "lowest_voltage_km", "lowest_voltage_s", "useful_zone_v", "useful_zone",
            "rail_potential_v", "rail_potential_km", "utilisation_percent", "utilisation_device", "overloaded", "late_trains",
-           "worst_late_s", "worst_late_train", "stuck_trains", "trips")  # fmt: skip
+           "worst_late_s", "worst_late_train", "stuck_trains", "dark_trains", "unfinished_trains", "unserved_loads",
+           "unserved_load_s", "blackout_s", "contract_share_percent", "contract_point", "breaker_share_percent",
+           "breaker_device", "trips")  # fmt: skip
 LABELS = ("case", "kind", "subject", "mode", "grid", "status", "reason")
 
 
@@ -55,7 +58,7 @@ def summary_of(
     told = [_told(checks, row, base.get(row["grid"], set())) for row in rows]
     outages = [row for row in told if row["kind"] != BASE]
     outages.sort(key=_severity)
-    is_whole = not run.interrupted and len(rows) == len(run.cases)
+    is_whole = len(run.rows) == len(run.cases) and all(row["status"] == COMPLETE for row in run.rows)
     fails = any(row["fails"] for row in told)
     return {
         "verdict": "fails" if fails else "holds" if is_whole else "not judged",

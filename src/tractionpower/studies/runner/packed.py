@@ -16,7 +16,7 @@ import pyarrow as pa
 from tractionpower.results.tables import schema_of
 from tractionpower.studies.runner.case import CASE_TABLES, COMPLETE, FIGURES, CaseResult
 
-FORMAT = 1
+FORMAT = 2
 """Of the archive; raised when its content changes, so that older ones are not read."""
 
 _MEMBER = "case.json"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,13 +11,13 @@ from tractionpower.cosimulation.check import check_scenario
 from tractionpower.cosimulation.run import Writer
 from tractionpower.errors import Problem, UsageError, raise_errors
 from tractionpower.io.library import shipped_library
-from tractionpower.model.change import split_change
+from tractionpower.model.change import apply_changes, split_change
 from tractionpower.model.library import Library
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter, RunWriter
 from tractionpower.results.versions import versions
-from tractionpower.studies.cases.judgement import checks_of, verdicts
+from tractionpower.studies.cases.judgement import Check, checks_of, own_verdicts
 from tractionpower.studies.cases.measure import measure
 from tractionpower.studies.contingency.envelope import Delays
 from tractionpower.studies.runner.case import COMPLETE, FLAGGED, Case
@@ -29,6 +29,9 @@ from tractionpower.studies.sweep.cases_file import given_cases, read_cases
 from tractionpower.studies.sweep.differences import differences, extremes
 from tractionpower.studies.sweep.keys import Range, Varied, range_of, varied_of
 from tractionpower.studies.sweep.trials import try_cases
+
+_NO_LIMITS = ("supply.substations", "supply.section_cabins", "supply.feeders", "supply.contact_lines", "timetable.", "line.")
+"""How paths begin that change no limit, so that the inputs of most cases need not be made once more to judge them."""
 
 MEASURED = (COMPLETE, FLAGGED)
 """How a case ended that has figures."""
@@ -119,6 +122,15 @@ class SweepStudy:
         self._library = shipped_library() if library is None else library
         self.warnings: tuple[Problem, ...] = (*problems, *try_cases(scenario, self._library, plan.cases))
 
+    def judged(self, rows: Iterable[Mapping[str, Any]]) -> Iterator[tuple[tuple[Check, ...], Mapping[str, Any]]]:
+        """Yield the row of each case that has figures with what it is held against: the limits of its own inputs."""
+        base, changes = checks_of(self.scenario), {case.id: case.changes for case in self.plan.cases}
+        for row in rows:
+            if row["status"] in MEASURED:
+                own = changes[row["case"]]
+                is_alike = all(split_change(change)[0].startswith(_NO_LIMITS) for change in own)
+                yield base if is_alike else checks_of(apply_changes(self.scenario, own, self._library)), row
+
     def execute(self, writer: Writer, store: CaseStore, *, scheduler: str | None = None, **how: Any) -> SweepOutcome:
         """Run all cases and write the tables; parameters are those of `studies.runner.run.run_cases`.
 
@@ -158,7 +170,7 @@ class SweepOutcome:
             "workers": cases.workers,
             "scheduler": scheduler,
             "cases": cases.counts(),
-            "verdicts": verdicts(checks_of(scenario), cases.rows),
+            "verdicts": own_verdicts(study.judged(cases.rows)),
             "sweep": {
                 "keys": _values_of(plan),
                 "sample": {"count": plan.sample, "seed": plan.seed} if plan.sample else None,
