@@ -12,10 +12,13 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.studies.cases.judgement import Check, checks_of
 from tractionpower.studies.runner.case import COMPLETE
 
-ALWAYS = ("lowest_voltage_v", "breaker_share_percent", "contract_share_percent")
+ALWAYS = ("lowest_voltage_v", "breaker_share_percent", "contract_share_percent", "blackout_s")
 """Figures whose limits are asked of every case."""
 
-NORMALLY = ("useful_zone_v", "useful_train_v", "useful_zone_time_mean_v", "useful_train_time_mean_v", "worst_late_s")
+NORMALLY = (
+    "useful_zone_v", "useful_zone_time_mean_v", "useful_train_v", "useful_train_time_mean_v", "worst_late_s", "stuck_trains",
+    "dark_trains", "unserved_loads", "trips",
+)  # fmt: skip
 """Figures whose limits are asked of normal operation."""
 
 MENDED_BY_VOLTAGE = frozenset(("low voltage", "useful voltage", "late trains"))
