@@ -27,8 +27,8 @@ def test_outages_that_violate_a_limit(capsys):
     options += ["--set", "supply.loads[train].limits=range"]
     assert main(["contingency", "small", *options]) == 0
     told = capsys.readouterr()
-    assert "4 outages, 2 base cases" in told.err
-    assert "FAILS: limits are violated in" in told.out
+    assert "2 outages in 4 cases, 2 base cases" in told.err
+    assert "FAILS: 2 of 2 outages fail, none of them at something that holds" in told.out
     assert "A bypassed, grid low" in told.out
     results = Results.open("out")
     assert (results.run["study"], results.run["kind"]) == ("small", "contingency")
@@ -57,8 +57,8 @@ def test_outages_that_hold(study, capsys):
     (study / "supply.yaml").write_text(STRONG.replace("power_kw: 3000", "power_kw: 300"), encoding="utf-8")
     assert main(["contingency", "small", *OPTIONS, "--only", "unit", "--grid", "normal", "--strict"]) == 0
     told = capsys.readouterr()
-    assert "HOLDS: no limit is violated in 2 outages" in told.out
-    assert "without a rating, so not judged: 2 unit, 2 substation" in told.out
+    assert "HOLDS: all 2 outages hold" in told.out
+    assert "without a rating, so not judged: 2 rectifier units, 2 substations" in told.out
 
 
 def test_what_is_chosen_is_kept_with_the_results():
@@ -77,7 +77,9 @@ def test_what_is_chosen_is_kept_with_the_results():
     [
         (["--only", "substatoin"], 2, "did you mean substation?"),
         (["--grid", "normal,lwo"], 2, "allowed are normal, low, high"),
-        (["--device", "Lodz"], 1, "contingency.devices[0]"),
+        (["--device", "Lodz"], 1, "--device"),
+        (["--device", "A 1 highkm"], 1, "did you mean A 1 high_km?"),
+        (["--device", "A", "--only", "section_cabin"], 1, "there is no outage of kind section_cabin at A"),
         (["--set", "supply.substations[A].km=99"], 1, "error"),
     ],
 )
@@ -114,11 +116,11 @@ def test_ctrl_c_keeps_what_was_computed_and_the_same_command_goes_on(monkeypatch
 
 def test_headlines_say_what_fails_already_without_an_outage():
     told = {
-        "verdict": "fails", "kinds": [{"cases": 5}], "failing": 4, "failing_beyond_base": 1,
+        "verdict": "fails", "outages": {"all": 5, "failing": 4, "beyond_base": 1},
         "not_computed": [{}], "base": [{"fails": ["overload"]}, {"fails": ["overload", "late trains"]}],
     }  # fmt: skip
     assert headline(told) == (
-        "FAILS: limits are violated in 4 of 5 outages; the base cases violate limits themselves (overload, late trains),"
-        " 1 outages more than that; 1 cases could not be computed"
+        "FAILS: 4 of 5 outages fail, 1 of them at something that holds with nothing out;"
+        " with nothing out: overload, late trains; 1 case could not be computed"
     )
     assert headline(told | {"verdict": "not judged", "base": [], "failing": 0}).startswith("NOT JUDGED")

@@ -92,6 +92,12 @@ def test_a_search_finds_what_is_enough_and_goes_on_after_ctrl_c(capsys, monkeypa
     assert not (folder / ".running").exists()
 
 
+@pytest.mark.parametrize("option", [["--workers", "2"], ["--scheduler", "tcp://127.0.0.1:8786"]])
+def test_options_of_the_search_are_refused_without_it(option, capsys):
+    assert main(["size", "six", SHORT, *option]) == 2
+    assert f"{option[0]}: only with --search" in capsys.readouterr().err
+
+
 def test_a_search_with_nothing_to_vary_is_refused_before_the_run(capsys):
     keep = ["--set=sizing.search.most_units=2", "--set=sizing.search.fewest_units=2"]
     assert main(["size", "six", "--search", *keep]) == 2
@@ -121,7 +127,7 @@ def test_verdicts_in_words():
     told = {"verdict": "fail", "permitted_percent": 90.0, "rated": 12, "devices": 20}
     told |= {"failing": ["a"], "failing_breakers": ["b", "c"], "failing_contracts": []}
     assert headline(told) == (
-        "FAIL: 1 of 12 rated devices beyond 90 %, 2 feeders beyond the settings of their breakers;"
+        "FAIL: 1 of 12 rated devices beyond 90 %, 2 feeders beyond what breakers are set to;"
         " 8 more have no rating and are not judged"
     )
     assert headline(told | {"verdict": "not rated"}).startswith("NOT RATED: none of 20 devices")

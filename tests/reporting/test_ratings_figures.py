@@ -72,6 +72,13 @@ def test_demand_beyond_the_contract_stands_out(data):
         bar.get_facecolor()[:3] == pytest.approx((0.835, 0.369, 0.0), abs=0.01) for axes in figure.axes for bar in axes.patches
     )
     assert (drawn, red) == (len(rows), (rows["met"] == "no").sum())
+    contracts = {name: own.max() for name, own in rows.groupby(rows["supply_point"].astype(str))["contract_power_kw"]}
+    for axes in figure.axes:
+        named = contracts[axes.get_title(loc="left").partition(":")[0]]
+        lines = {line.get_ydata()[0] * 1000.0 for line in axes.lines}
+        assert lines == (set() if np.isnan(named) else {named})
+        assert all(line.get_zorder() > bar.get_zorder() for line in axes.lines for bar in axes.patches)
+    assert "contract" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def test_load_duration_shows_the_highest(data):

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -26,6 +28,7 @@ from tractionpower.cli.options import (
 from tractionpower.cli.study_call import call_study, execute_cases, exit_code
 
 if TYPE_CHECKING:
+    from tractionpower.errors import Problem
     from tractionpower.model.scenario import Scenario
 
 Chosen = tuple[list[str], list[str], list[str]]
@@ -59,16 +62,19 @@ def contingency(
     """Compute every outage and compare it with the base case."""
     from tractionpower.cli.console import warn_of_compilation
     from tractionpower.cli.contingency_summary import show
+    from tractionpower.io.wording import counted
     from tractionpower.studies.contingency.study import OutageStudy, run_into
 
     call = call_study(study, changes, out, "contingency")
     grids = [word.strip() for word in grid.split(",")] if grid is not None else []
     call = replace(call, scenario=_choose(call.scenario, (only or [], device or [], grids)))
-    with call.placed():
+    with call.placed(), _as_options({"devices": "--device" if device else "", "kinds": "--only" if only else ""}):
         outages = OutageStudy(call.scenario, library=call.loaded.library, study=call.name, pairs=pairs, grids=grids or None)
     call.warn(outages.warnings)
     base = sum(case.base for case in outages.cases)
-    call.greet(f"; {len(outages.cases) - base} outages, {base} base case{'s' if base > 1 else ''}")
+    out_of = {(case.kind, case.subject, case.mode) for case in outages.cases if not case.base}
+    of_cases = counted(len(outages.cases) - base, "case")
+    call.greet(f"; {counted(len(out_of), 'outage')} in {of_cases}, {counted(base, 'base case')}")
     warn_of_compilation("advance")
     writer = call.new_writer(force=force)
     running = partial(run_into, outages, writer, full_tables=call.cases_folder if full_tables else None)
@@ -78,6 +84,22 @@ def contingency(
     show(outcome.run)
     code = exit_code(flagged=outcome.flagged, holds=outcome.holds, strict=strict)
     call.leave(writer, code, no_reports=no_reports)
+
+
+@contextmanager
+def _as_options(given: Mapping[str, str]) -> Iterator[None]:
+    """Place what is wrong with a field of the study's `contingency` at the option that sets it, if one does."""
+    from tractionpower.errors import InputError
+
+    def placed(problem: Problem) -> Problem:
+        field = problem.path.removeprefix("contingency.").partition("[")[0]
+        option = given.get(field, "") if problem.path.startswith("contingency.") else ""
+        return replace(problem, path="", place=option) if option else problem
+
+    try:
+        yield
+    except InputError as error:
+        raise InputError([placed(problem) for problem in error.problems]) from None
 
 
 def _choose(scenario: Scenario, chosen: Chosen) -> Scenario:

@@ -50,15 +50,18 @@ def show(run: Mapping[str, Any]) -> None:
 
 def headline(told: Mapping[str, Any]) -> str:
     """Return in one line whether all holds."""
-    outages = sum(kind["cases"] for kind in told["kinds"])
-    left = f"; {len(told['not_computed'])} cases could not be computed" if told["not_computed"] else ""
+    from tractionpower.io.wording import counted
+    from tractionpower.reporting.outages import outcome_words
+
+    missing, outages = len(told["not_computed"]), told["outages"]
+    left = f"; {counted(missing, 'case')} could not be computed" if missing else ""
+    words = outcome_words(outages["all"], outages["failing"], outages["beyond_base"])
     if told["verdict"] == "holds":
-        return f"HOLDS: no limit is violated in {outages} outages"
+        return f"HOLDS: {words}"
     if told["verdict"] == "not judged":
-        return f"NOT JUDGED: no limit is violated in the {outages} outages that were computed{left}"
+        return f"NOT JUDGED: of those that were computed, {words}{left}"
     base = ", ".join(dict.fromkeys(word for row in told["base"] for word in row["fails"]))
-    beyond = f"; the base cases violate limits themselves ({base}), {told['failing_beyond_base']} outages more than that"
-    return f"FAILS: limits are violated in {told['failing']} of {outages} outages{beyond if base else ''}{left}"
+    return f"FAILS: {words}{f'; with nothing out: {base}' if base else ''}{left}"
 
 
 def _outages(console: Console, told: Mapping[str, Any]) -> None:
@@ -70,7 +73,7 @@ def _outages(console: Console, told: Mapping[str, Any]) -> None:
     table = new_table(["the worst outages", "violates"], [COLUMNS[name] for name in shown])
     for row in rows:
         flagged = " (flagged)" if row["status"] == "flagged" else ""
-        table.add_row(row["case"] + flagged, ", ".join(row["fails"]), *(_number(name, row[name]) for name in shown))
+        table.add_row(row["case"] + flagged, ", ".join(row["fails"]), *(_number(name, row) for name in shown))
     console.print()
     console.print(table)
     lasting = sum(kind["cases"] for kind in told["kinds"]) - MOST_OUTAGES
@@ -102,7 +105,9 @@ def _left_out(console: Console, told: Mapping[str, Any]) -> None:
     if len(told["not_computed"]) > MOST_REASONS:
         console.print(f"... and {len(told['not_computed']) - MOST_REASONS} more that could not be computed, see table cases")
     if told["unrated"]:
-        kinds = ", ".join(f"{count} {kind.replace('_', ' ')}" for kind, count in told["unrated"].items())
+        from tractionpower.reporting.device_words import counted_devices
+
+        kinds = ", ".join(counted_devices(count, kind) for kind, count in told["unrated"].items())
         console.print(f"without a rating, so not judged: {kinds}")
     for note in told["notes"][:MOST_REASONS]:
         console.print(f"not looked at: {note}")
@@ -110,7 +115,10 @@ def _left_out(console: Console, told: Mapping[str, Any]) -> None:
         console.print(f"... and {len(told['notes']) - MOST_REASONS} more that were not looked at, see run.json")
 
 
-def _number(name: str, value: float | None) -> str:
+def _number(name: str, row: Row) -> str:
+    value = row[name]
     if value is None:
         return ""
+    if name == "worst_late_s" and row["stuck_trains"]:
+        return f"at least {value:.1f}"  # a train that has not arrived counts with the time until the end of the clock
     return f"{value:.0f}" if name.endswith(("_v", "trains", "trips")) else f"{value:.1f}"

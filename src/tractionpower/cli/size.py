@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -28,20 +29,24 @@ def size(
         bool, typer.Option("--search", help="Search for the least equipment that meets the limits, outages included.")
     ] = False,
     workers: Annotated[
-        int | None, typer.Option("--workers", min=1, help="Runs of the search at a time; default: the cores.")
+        int | None, typer.Option("--workers", min=1, help="With --search: its runs at a time; default: the cores.")
     ] = None,
     scheduler: Annotated[
-        str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Dask scheduler whose workers run the search.")
+        str | None, typer.Option("--scheduler", metavar="ADDRESS", help="With --search: Dask scheduler whose workers run it.")
     ] = None,
     no_reports: NoReports = False,
     force: Force = False,
-    strict: Annotated[bool, strict_option("a device or a limit does not hold")] = False,
+    strict: Annotated[
+        bool, strict_option("a device or a limit does not hold; without a rating a device is not rated, which is no violation")
+    ] = False,
     as_json: VerdictAsJson = False,
 ) -> None:
     """Rate every device of the supply: what it carries, what it may, what is left."""
     from tractionpower.cli.console import warn_of_compilation
     from tractionpower.cli.size_summary import show
 
+    if not search:
+        _refuse_without_search({"--workers": workers, "--scheduler": scheduler})
     call = call_study(study, changes, out, "size")
     call.greet()
     warn_of_compilation("advance")
@@ -57,6 +62,14 @@ def size(
     flagged = is_stopped or sized.outcome.flagged
     code = exit_code(flagged=flagged, holds=_holds(sized, run), strict=strict)
     call.leave(writer, code, no_reports=no_reports)
+
+
+def _refuse_without_search(given: Mapping[str, object]) -> None:
+    from tractionpower.errors import UsageError
+
+    options = [option for option, value in given.items() if value is not None]
+    if options:
+        raise UsageError(f"{' and '.join(options)}: only with --search; the ratings themselves are one run")
 
 
 def _size(call: StudyCall, *, force: bool, goes_on: bool) -> tuple[Sized, RunWriter]:

@@ -87,15 +87,18 @@ def search_headline(found: Mapping[str, Any]) -> str:
 
 def headline(told: Mapping[str, Any]) -> str:
     """Return the verdict on the devices in one line."""
+    from tractionpower.io.wording import counted
+
     permitted, rated, devices = told["permitted_percent"], told["rated"], told["devices"]
     bare = f"; {devices - rated} more have no rating and are not judged" if rated < devices else ""
     if told["verdict"] == "not rated":
         return f"NOT RATED: none of {devices} devices has a rating; give substations a unit or rated_current_a"
     if told["verdict"] == "fail":
-        counts = {f"of {rated} rated devices beyond {permitted:g} %": told["failing"],
-                  "feeders beyond the settings of their breakers": told["failing_breakers"],
-                  "supply points beyond their contracts": told["failing_contracts"]}  # fmt: skip
-        return f"FAIL: {', '.join(f'{len(found)} {words}' for words, found in counts.items() if found)}{bare}"
+        counts = [(len(told["failing"]), "", f"of {rated} rated devices beyond {permitted:g} %"),
+                  (len(told["failing_breakers"]), "feeder", "beyond what breakers are set to"),
+                  (len(told["failing_contracts"]), "supply point", "beyond contract")]  # fmt: skip
+        words = (f"{counted(number, noun) if noun else number} {beyond}" for number, noun, beyond in counts if number)
+        return f"FAIL: {', '.join(words)}{bare}"
     worst = max(told["worst"], key=lambda row: row["utilisation_percent"])
     most = f"most {worst['device']}, {worst['utilisation_percent']:.1f} %"
     return f"PASS: all {rated} rated devices within {permitted:g} % ({most}){bare}"

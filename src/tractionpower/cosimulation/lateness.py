@@ -25,7 +25,8 @@ class TrainLateness(NamedTuple):
     ----------
     late_s
         Greatest lateness at its timed calls [s], not below 0; one that it has not come to counts with the time until the
-        end of the run. NaN without a timed call that was due.
+        end of the run, so it is later than that. NaN without a timed call that was due, and for a train that holds or is dark
+        before any call at which it was late: nothing says how late it becomes.
     holds
         Whether it stands at the end of the run for want of effort or power.
     dark
@@ -55,6 +56,7 @@ def lateness_of(run: QuietRun) -> dict[str, TrainLateness]:
         mover = state.movers[k]
         on_line = mover["status"] not in (OUTSIDE, GONE, STAYING)
         holds, dark = bool(mover["held_s"] >= STUCK_S), bool(np.isfinite(mover["lost_s"]))
-        finished_s = float(mover["finished_s"])
-        found[planned.run.id] = TrainLateness(max(late, default=NAN), on_line and holds, on_line and dark, finished_s)
+        latest, stands = max(late, default=NAN), on_line and (holds or dark)
+        late_s = latest if latest > 0.0 or not stands else NAN
+        found[planned.run.id] = TrainLateness(late_s, on_line and holds, on_line and dark, float(mover["finished_s"]))
     return found

@@ -20,6 +20,19 @@ KINDS = {
 """Kinds of devices in words, in the order of sheets and figures."""
 
 
+def counted_devices(number: int, kind: str) -> str:
+    """Return how many devices of a kind there are, in words.
+
+    >>> counted_devices(1, "return_feeder"), counted_devices(2, "switch"), counted_devices(1, "rails")
+    ('1 return cable', '2 switches', '1 rail section')
+    """
+    words = KINDS.get(kind, f"{kind.replace('_', ' ')}s").lower()
+    if number == 1:
+        head, blank, tail = words.partition(" of ")
+        words = f"{head.removesuffix('es' if head.endswith('ches') else 's')}{blank}{tail}"
+    return f"{number} {words}"
+
+
 def kind_order(kind: str) -> int:
     """Return the place of a kind of devices among all kinds."""
     return list(KINDS).index(kind) if kind in KINDS else len(KINDS)

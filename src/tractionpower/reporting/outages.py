@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from tractionpower.io.wording import counted
 from tractionpower.model.limits import Limit, find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.places import LinePlaces
@@ -70,6 +71,22 @@ class Failure:
     what: str
     short: str
     words: str
+
+
+def outcome_words(outages: int, failing: int, beyond_base: int) -> str:
+    """Return how many outages fail, and how many of these at more than what fails with nothing out.
+
+    >>> outcome_words(1, 0, 0), outcome_words(5, 1, 1)
+    ('the one outage holds', '1 of 5 outages fails')
+    >>> outcome_words(5, 4, 1)
+    '4 of 5 outages fail, 1 of them at something that holds with nothing out'
+    """
+    if not outages:
+        return "no outage was looked at"
+    if not failing:
+        return "the one outage holds" if outages == 1 else f"all {outages} outages hold"
+    beyond = f", {beyond_base or 'none'} of them at something that holds with nothing out" if beyond_base < failing else ""
+    return f"{failing} of {counted(outages, 'outage')} fail{'s' if failing == 1 else ''}{beyond}"
 
 
 class Outages:

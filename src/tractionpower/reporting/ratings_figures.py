@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from tractionpower.reporting.axes import clock_label, set_clock
@@ -19,7 +20,7 @@ from tractionpower.reporting.device_words import (
     zones_along_line,
 )
 from tractionpower.reporting.run_data import RunData
-from tractionpower.reporting.style import BLUE, COLOURS, DASHES, GREEN, GREY, INK, ORANGE, SKY, STYLE, VERMILION, new_figure
+from tractionpower.reporting.style import BLUE, COLOURS, DASHES, GREEN, INK, ORANGE, SKY, STYLE, VERMILION, new_figure
 from tractionpower.studies.ratings.words import window_words
 
 WIDTH = 8.3
@@ -219,10 +220,15 @@ def demand(data: RunData) -> Figure | None:
         _clock(grid, float(rows["from_s"].min()), float(rows["from_s"].max()) + QUARTER_S, columns)
         figure.supylabel("mean power of a quarter of an hour by the clock [MW]", fontsize=9)
         figure.suptitle(f"{data.title}: demand of the supply points", x=0.01, ha="left", fontsize=11)
-        handles = [Patch(color=SKY, label="demand"), Patch(color=VERMILION, label="beyond the contract")]
-        figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8)
+        handles: list[Any] = [Patch(color=SKY, label="demand")]
+        if rows["contract_power_kw"].notna().any():
+            handles += [Patch(color=VERMILION, label="beyond the contract"), Line2D([], [], label="contract", **CONTRACT)]
+        figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=8)
         return figure
 
+
+CONTRACT: dict[str, Any] = {"color": INK, "linewidth": 1.3, "linestyle": (0, (5, 3))}
+"""Style of contracts."""
 
 QUARTER_S = 900.0
 """A quarter of an hour [s]."""
@@ -242,7 +248,8 @@ def _draw_demand(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     axes.bar(starts, np.nan_to_num(power), QUARTER_S, align="edge", color=[VERMILION if over else SKY for over in beyond])
     title = f"{name}: highest {np.nanmax(power):.2f} MW" if np.isfinite(power).any() else name
     if np.isfinite(contract).any():
-        axes.plot(starts, contract, color=GREY, linewidth=1.0, linestyle=(0, (5, 3)))
+        # over the whole width: demand by the clock leaves out what is no whole quarter of an hour
+        axes.axhline(float(np.nanmax(contract)), zorder=3.0, **CONTRACT)
         title += f", contract {np.nanmax(contract):.2f} MW"
     axes.set_axisbelow(True)
     axes.set_title(title, loc="left", fontsize=8, pad=3)

@@ -138,7 +138,7 @@ SIZING_TABLES: dict[str, tuple[Column, ...]] = {
         column("rail_potential_v", "Greatest rail potential of either sign; empty where nothing is joined with earth."),
         column("rail_potential_km", "Where.", "f8"),
         column("late_trains", "Trains later at a call than the tolerance.", "i4"),
-        column("worst_late_s", "Greatest lateness at a call; empty without timed calls."),
+        column("worst_late_s", "Greatest lateness at a call, at least that if trains are stuck; empty without timed calls."),
         column("worst_late_train", "The train.", "text"),
         column("stuck_trains", "Trains that stand for good, or without a voltage at the end.", "i4"),
         column("dark_trains", "Trains without a voltage for longer than they coast without one.", "i4"),
@@ -196,7 +196,7 @@ SIZING_TABLES: dict[str, tuple[Column, ...]] = {
     "case_trains": (
         _CASE,
         column("train", "Identifier of the train's run.", "text"),
-        column("late_s", "Greatest lateness at its timed calls; empty without one."),
+        column("late_s", "Greatest lateness at its timed calls, at least that if it is stuck; empty without one that was due."),
         column("added_late_s", "How much more that is than in the base case."),
         column("finished_s", "When it left the line or came to stay, seconds after midnight; empty: not within the clock.", "f8"),
         column("status", "What became of it: on time, late, stuck.", "text"),

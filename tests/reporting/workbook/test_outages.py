@@ -116,5 +116,5 @@ def test_where_every_outage_holds_it_says_so(write):
     scenario = make_case()[1]
     full = outages(scenario, grids=("normal",))
     rows = [row for row in full.table("cases").to_dict("records") if row["kind"] in ("base", "section_cabin")]
-    assert "All 1 outages hold" in texts(write(of_cases(full, rows), scenario)["Cover"])
+    assert "The one outage holds" in texts(write(of_cases(full, rows), scenario)["Cover"])
     assert "No outage was looked at" in texts(write(of_cases(full, rows[:1]), scenario)["Cover"])

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from datetime import datetime
 from typing import Any
 
+from tractionpower.io.wording import counted
 from tractionpower.model.base import format_time
-from tractionpower.reporting.outages import COMPUTED, KINDS_WORDS, Outages
+from tractionpower.reporting.outages import COMPUTED, KINDS_WORDS, Outages, outcome_words
 from tractionpower.reporting.workbook.cover import MOST_NOTES, Said, fill_in, verdict_sentence
 from tractionpower.reporting.workbook.facts import Facts
 from tractionpower.reporting.workbook.page import Book, Page
@@ -25,12 +26,13 @@ def _head(facts: Facts, outages: Outages) -> Iterator[Said]:
     cases = outages.cases
     own = cases[cases["kind"] != "base"].drop_duplicates(["kind", "subject", "mode"])
     kinds = [str(kind) for kind in own["kind"]]
-    counts = [f"{KINDS_WORDS.get(kind, kind).lower()} {kinds.count(kind)}" for kind in dict.fromkeys(kinds)]
+    counts = [f"{KINDS_WORDS.get(kind, kind).lower()}: {kinds.count(kind)}" for kind in dict.fromkeys(kinds)]
     grids = f", each at {', '.join(outages.grids)} grid voltage" if len(outages.grids) > 1 else ""
     clock = facts.scenario.clock
-    yield "What was computed", f"{len(own)} outages{grids}: {', '.join(counts)}; {len(cases)} cases.", "wrapped"
+    what = f"{counted(len(own), 'outage')}{grids} ({', '.join(counts)}); {counted(len(cases), 'case')}."
+    yield "What was computed", what, "wrapped"
     span = f"{format_time(clock.start)} to {format_time(clock.end)} in steps of {clock.step_s:g} s"
-    yield "Each case", f"{span}, {len(facts.scenario.runs)} trains.", "wrapped"
+    yield "Each case", f"{span}, {counted(len(facts.scenario.runs), 'train')}.", "wrapped"
 
 
 def _verdicts(facts: Facts, outages: Outages) -> Iterator[Said]:
@@ -38,13 +40,8 @@ def _verdicts(facts: Facts, outages: Outages) -> Iterator[Said]:
     outs = [cases for first, cases in groups if first["kind"] != "base"]
     failing = [cases for cases in outs if any(map(outages.failures, cases.values()))]
     worse = sum(any(map(outages.is_worse, cases.values())) for cases in failing)
-    if failing:
-        beyond = f", {worse} of them at something that holds with nothing out" if worse < len(failing) else ""
-        yield "Verdict", f"{len(failing)} of {len(outs)} outages fail{beyond}", "big bad"
-    elif outs:
-        yield "Verdict", f"All {len(outs)} outages hold", "big good"
-    else:
-        yield "Verdict", "No outage was looked at", "big doubt"
+    words = outcome_words(len(outs), len(failing), worse)
+    yield "Verdict", words[0].upper() + words[1:], "big bad" if failing else "big good" if outs else "big doubt"
     base = [case for first, cases in groups if first["kind"] == "base" for case in cases.values()]
     said = [(case, "; ".join(failure.words for failure in outages.failures(case))) for case in base]
     if said:
@@ -70,7 +67,11 @@ def _trust(outages: Outages) -> Any:
         counts = cases["status"].value_counts()
         parts = ", ".join(f"{counts[status]} {status}" for status in sorted(counts.index))
         bare = cases[~cases["status"].isin(COMPUTED)]
-        yield "Status of the cases", f"{len(cases)} cases: {parts}.", "good" if (cases["status"] == "complete").all() else "bad"
+        yield (
+            "Status of the cases",
+            f"{counted(len(cases), 'case')}: {parts}.",
+            "good" if (cases["status"] == "complete").all() else "bad",
+        )
         if facts.run.get("status") == "interrupted":
             yield "", "The study was interrupted: what follows is a part of it. The same command goes on with it.", "bad"
         for row in bare.head(MOST_NOTES).to_dict("records"):

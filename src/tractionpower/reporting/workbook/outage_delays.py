@@ -26,7 +26,9 @@ def add(book: Book, outages: Outages) -> None:
     page = book.page("Delays in outages", "Delays in outages: trains that are later than without the outage")
     page.note(
         f"Lateness at the timed call where a train is latest, and how much more that is than with nothing out at the same grid"
-        f" voltage; trains that lose more than {least:g} s, or stand for good. Trains do not see each other."
+        f" voltage; trains that lose more than {least:g} s, or stand for good. A call that a train has not"
+        " come to counts with the time until the end of the clock: a stuck train is late by at least that, and by nothing told"
+        " where none was due. Trains do not see each other."
     )
     if rows.empty:
         page.line("No outage makes a train later.")
@@ -40,7 +42,7 @@ def add(book: Book, outages: Outages) -> None:
     order = {case: number for number, case in enumerate(outages.cases["case"])}
     worst = worst.assign(_at=[order.get(str(case), len(order)) for case in worst["case"]]).sort_values("_at", kind="stable")
     cells = (
-        (outages.told(row["case"]), row["train"], row["late_s"], row["added_late_s"], row["status"])
+        (outages.told(row["case"]), row["train"], row["late_s"], row["added_late_s"], _status(row))
         for row in worst.to_dict("records")
     )
     block = page.table(_TRAINS, cells)
@@ -64,6 +66,11 @@ _TRAINS = (
     Column(ADDED, "0.0"),
     Column("status", "beside"),
 )
+
+
+def _status(row: dict[str, Any]) -> str:
+    is_least = row["status"] == "stuck" and row["late_s"] > 0.0
+    return "stuck, late by at least that" if is_least else str(row["status"])
 
 
 def _sums(outages: Outages, rows: pd.DataFrame) -> list[tuple[Any, ...]]:

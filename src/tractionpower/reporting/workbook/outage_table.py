@@ -28,7 +28,7 @@ def add(book: Book, outages: Outages) -> None:
     page.note(
         "A row for each outage, with the worst of all grid voltages where none is named; grouped by kind, along the line. Lowest"
         " voltage: at trains, loads and cross-sections that are fed. Added delay: how much later than without the outage, at the"
-        " same grid voltage, the most delayed train is at a timed call. An outage holds if no limit of the voltage, no rating and"
+        " same grid voltage, the most delayed train is at a timed call; at least that of stuck trains. An outage holds if no limit of the voltage, no rating and"
         " no tolerance of lateness is passed and all its cases were computed; trips of breakers are told, not judged."
     )
     rows = [_row(outages, first, cases) for first, cases in outages.groups()]
@@ -167,7 +167,7 @@ def _every(book: Book, outages: Outages) -> None:
     page = book.page("All cases", "All cases: every outage at every grid voltage")
     page.note(
         "`tractionpower run STUDY` with the changes of table case_changes repeats a case with all its tables. A case that failed"
-        " or was refused has no figures."
+        " or was refused has no figures. Latest: at least that where trains are stuck at the end."
     )
     counts = {"overloaded", "late_trains", "stuck_trains", "trips"}
     rows = [

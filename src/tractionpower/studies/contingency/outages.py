@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from difflib import SequenceMatcher
 from itertools import combinations
 
 from tractionpower.errors import InputError, Problem
@@ -21,6 +22,12 @@ from tractionpower.supply.site import survey
 
 GRIDS = ("normal", "low", "high")
 BASE = "base"
+
+MOST_NAMED = 12
+"""Devices that are named where one is unknown."""
+
+LEAST_LIKE = 0.6
+"""How alike the words of two devices are that could be meant by each other, 1 if they are the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,22 +177,56 @@ def _grid_factors(scenario: Scenario, grids: Iterable[str], notes: list[str]) ->
 
 
 def _chosen(scenario: Scenario, every: Sequence[Outage]) -> list[Outage]:
+    """Return the outages of the wished kinds and devices; a wish that none of them fulfils is an error."""
     wish = scenario.contingency
+    of_devices = every
     if wish.devices is not None:
-        known = {name for outage in every for name in outage.names}
-        known |= {station.id for station in scenario.supply.substations} | {cabin.id for cabin in scenario.supply.section_cabins}
-        problems = [
-            Problem(
-                "unknown_device", f"contingency.devices[{k}]", f"there is no device {name!r} that could be out",
-                "a substation, section cabin, feeder ('A 1 low_km') or contact line ('track 1 km 0-10.8')",
-                did_you_mean(name, sorted(known)),
-            )
-            for k, name in enumerate(wish.devices) if name not in known
-        ]  # fmt: skip
-        if problems:
-            raise InputError(problems)
-        every = [outage for outage in every if not outage.names.isdisjoint(wish.devices)]
-    return [outage for kind in OUTAGE_KINDS if kind in wish.kinds for outage in every if outage.kind == kind]
+        _refuse_unknown(scenario, wish.devices, every)
+        of_devices = [outage for outage in every if not outage.names.isdisjoint(wish.devices)]
+    chosen = [outage for kind in OUTAGE_KINDS if kind in wish.kinds for outage in of_devices if outage.kind == kind]
+    if every and not chosen:
+        found = f"there is no outage of {_listed(wish.kinds)}" + (f" at {', '.join(wish.devices)}" if wish.devices else "")
+        there = ", ".join(dict.fromkeys(outage.kind for outage in of_devices))
+        path = "contingency.kinds" if there else "contingency.devices"
+        raise InputError([Problem("no_outage", path, found, f"there are outages of {there}" if there else "none at all there")])
+    return chosen
+
+
+def _listed(kinds: Sequence[str]) -> str:
+    return "any kind" if len(kinds) == len(OUTAGE_KINDS) else f"kind {' or '.join(kinds)}"
+
+
+def _refuse_unknown(scenario: Scenario, devices: Sequence[str], every: Sequence[Outage]) -> None:
+    stations = [*(station.id for station in scenario.supply.substations), *(cabin.id for cabin in scenario.supply.section_cabins)]
+    known = list(dict.fromkeys([*stations, *(name for outage in every for name in sorted(outage.names))]))
+    more = f" and {len(known) - MOST_NAMED} more" if len(known) > MOST_NAMED else ""
+    allowed = f"{', '.join(known[:MOST_NAMED])}{more}"
+    problems = [
+        Problem(
+            "unknown_device", f"contingency.devices[{k}]", f"there is no device {name!r} that could be out",
+            allowed, nearest_device(name, known),
+        )
+        for k, name in enumerate(devices) if name not in known
+    ]  # fmt: skip
+    if problems:
+        raise InputError(problems)
+
+
+def nearest_device(name: str, known: Sequence[str]) -> str:
+    """Return the remedy for an unknown device: the one of as many words that is most like it, word by word.
+
+    >>> nearest_device("A 1 lowkm", ["A", "A 1 high_km", "A 1 low_km", "AA 1 low_km"])
+    'did you mean A 1 low_km?'
+    """
+    words = name.lower().split()
+
+    def likeness(other: str) -> float:
+        pairs = zip(words, other.lower().split(), strict=True)
+        return sum(SequenceMatcher(None, mine, its).ratio() for mine, its in pairs) / len(words)
+
+    alike = {other: likeness(other) for other in known if len(other.split()) == len(words)} if words else {}
+    best = max(alike, key=lambda other: alike[other], default="")
+    return f"did you mean {best}?" if alike.get(best, 0.0) >= LEAST_LIKE else did_you_mean(name, known)
 
 
 class _Finder:

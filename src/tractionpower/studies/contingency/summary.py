@@ -65,6 +65,7 @@ def summary_of(
         "base": [row for row in told if row["kind"] == BASE],
         "worst": outages[:MOST_TOLD],
         "kinds": _by_kind(outages),
+        "outages": _counts(outages),
         "failing": sum(bool(row["fails"]) for row in outages),
         "failing_beyond_base": sum(bool(row["added"]) for row in outages),
         "not_computed": [{key: row[key] for key in LABELS} for row in run.rows if row["status"] in ("refused", "failed")],
@@ -86,6 +87,17 @@ def _severity(row: Row) -> tuple[Any, ...]:
     """Return by what the worst cases come first: what they add to the base case, what they violate, the voltage."""
     volts = row["lowest_voltage_v"]
     return -len(row["added"]), -len(row["fails"]), volts is None, volts or 0.0, row["case"]
+
+
+def _counts(cases: Sequence[Row]) -> dict[str, int]:
+    """Return how many outages there are, whatever the grid voltage, how many fail, and how many at more than the base."""
+    found: dict[tuple[str, ...], tuple[bool, bool]] = {}
+    for row in cases:
+        key = row["kind"], row["subject"], row["mode"]
+        fails, adds = found.get(key, (False, False))
+        found[key] = fails or bool(row["fails"]), adds or bool(row["added"])
+    failing, beyond = (sum(each[k] for each in found.values()) for k in (0, 1))
+    return {"all": len(found), "failing": failing, "beyond_base": beyond}
 
 
 def _by_kind(outages: Sequence[Row]) -> list[dict[str, Any]]:
