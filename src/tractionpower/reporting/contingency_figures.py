@@ -241,14 +241,15 @@ def outage_delays(outages: Outages, title: str) -> Figure | None:
             colour, _ = GRID_STYLES.get(outages.by_id[case]["grid"], (GREY, "s"))
             axes.plot(added, np.full(len(added), float(k)), "o", color=colour, alpha=0.45, markersize=4.5, markeredgewidth=0)
             most = own["train"].iloc[int(added.argmax())]
-            least = "at least; " if own["status"].iloc[int(added.argmax())] == "stuck" else ""
-            text = f"{most}; {least}{counted(len(own), 'train')}"
+            least = ", at least" if own["status"].iloc[int(added.argmax())] == "stuck" else ""
+            text = f"{most}{least}; {counted(len(own), 'train')}"
             axes.annotate(text, (added.max(), k), (6, 0), textcoords="offset points", va="center", fontsize=6.5, color=INK)
         axes.set_xlim(0.0, 1.35 * worst.iloc[0] / size)
         _name_rows(axes, [outages.told(case) for case in cases])
         axes.set_xlabel(f"added to the lateness at timed calls [{unit}]")
         more = f", the {len(cases)} worst of {len(worst)} cases" if len(cases) < len(worst) else ""
-        words = f"{title}: delays that outages add{more}\nA dot for each train; beside them the train with most and how many; at least: stuck, so late until the end of the clock"
+        words = f"{title}: delays that outages add{more}\nA dot for each train; beside them the train with most and how many"
+        words += "; at least: it stands for good"
         figure.suptitle(words, x=0.01, ha="left", fontsize=10)
         _grid_legend(figure, outages, cases)
         return figure

@@ -149,9 +149,12 @@ def test_a_train_that_never_comes_is_late_by_the_time_left_and_one_without_volta
 
 
 def test_a_stuck_train_of_which_no_call_was_due_has_no_lateness():
-    dead = [{"device": name, "time": 60.0, "state": "open"} for name in "AB"]
-    runs = [run("x", calls=[{"station": "P", "arrival": 1300.0}]), run("y", track="2", time=1200.0)]
+    """Stuck behind P, where it was in time, and before B, where it is not due yet."""
+    dead = [{"device": name, "time": 500.0, "state": "open"} for name in "AB"]
+    runs = [
+        run("x", calls=[{"station": "P", "arrival": 900.0}, {"station": "B", "arrival": 1900.0}]),
+        run("y", track="2", time=1200.0),
+    ]
     case = measure(couple(*runs, end_s=600.0, switch_events=dead))
     row = next(row for row in case.tables["case_trains"].to_pylist() if row["train"] == "x")
-    assert np.isnan(row["late_s"])
-    assert row["status"] == "stuck"
+    assert (row["late_s"], row["status"]) == (None, "stuck")

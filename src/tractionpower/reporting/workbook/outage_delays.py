@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
@@ -68,7 +69,7 @@ _TRAINS = (
 )
 
 
-def _status(row: dict[str, Any]) -> str:
+def _status(row: Mapping[Any, Any]) -> str:
     is_least = row["status"] == "stuck" and row["late_s"] > 0.0
     return "stuck, late by at least that" if is_least else str(row["status"])
 

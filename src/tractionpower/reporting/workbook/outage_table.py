@@ -28,8 +28,9 @@ def add(book: Book, outages: Outages) -> None:
     page.note(
         "A row for each outage, with the worst of all grid voltages where none is named; grouped by kind, along the line. Lowest"
         " voltage: at trains, loads and cross-sections that are fed. Added delay: how much later than without the outage, at the"
-        " same grid voltage, the most delayed train is at a timed call; at least that of stuck trains. An outage holds if no limit of the voltage, no rating and"
-        " no tolerance of lateness is passed and all its cases were computed; trips of breakers are told, not judged."
+        " same grid voltage, the most delayed train is at a timed call; at least that of stuck trains."
+        " An outage holds if no limit of the voltage, no rating and no tolerance of lateness is"
+        " passed and all its cases were computed; trips of breakers are told, not judged."
     )
     rows = [_row(outages, first, cases) for first, cases in outages.groups()]
     block = page.table(*_filled(_columns(outages), rows), frozen=True)
