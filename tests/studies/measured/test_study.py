@@ -127,7 +127,10 @@ def test_what_the_run_does_not_have_is_told_at_once(tmp_path):
 def test_times_that_do_not_meet(tmp_path):
     found = compare(tmp_path, rows_of(shift_s=9000.0))
     assert all(each.errors["rows"] == 0 for each in found.series)
-    assert [p.code for p in found.problems] == ["shift", "no_overlap", "no_overlap"]
+    assert [p.code for p in found.problems] == ["shift", "apart"]
+    assert "the run from " in found.problems[1].found
+    assert "say shift_s in the map: 8970 if" in found.problems[1].remedy, "rows begin 30 s into the run"
+    assert "shift_range_s" in found.problems[1].remedy
     assert np.isnan(found.tables()["measured_errors"].to_pandas()["mean_error"]).all()
 
 

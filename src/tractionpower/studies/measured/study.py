@@ -14,6 +14,7 @@ import pyarrow as pa
 
 from tractionpower.errors import InputError, Problem, UsageError
 from tractionpower.io.measured_files import MapFile, read_map
+from tractionpower.model.base import format_time
 from tractionpower.model.measured import PLACES, SUBJECTS, MeasuredMap
 from tractionpower.model.quantity import unit_of
 from tractionpower.results.results import Results
@@ -103,7 +104,9 @@ def compare_measured(results: Results, file: Path, map_file: Path) -> Comparison
     measurement = read_measurement(file, told, has_power)
     shift, series = _compared(run, measurement, told)
     doubts = [Problem("shift", "shift_s", words, severity="warning", place=told.place("shift_s")) for words in shift.doubts]
-    for each in series:
+    apart = _apart(run, measurement, told, shift.shift_s) if told.map.align == "time" else []
+    doubts += apart
+    for each in series if not apart else ():
         doubts += _doubts(each, told)
     problems = [*measurement.problems, *doubts]
     note = _note(results, told.map, (file, map_file), shift, problems)
@@ -148,6 +151,28 @@ def _judged(measurement: Measurement, compared: Iterable[Compared]) -> tuple[One
         OneSeries(each, values, errors_of(values, is_power=each.series.quantity == POWER and np.isfinite(values.every_s)))
         for each, values in zip(measurement.series, compared, strict=True)
     )
+
+
+def _apart(run: Run, measurement: Measurement, told: MapFile, shift_s: float) -> list[Problem]:
+    """Return a warning with the spans of both clocks, and the remedy, if the shifted measurement does not meet the run."""
+    samples = [each.samples for each in measurement.series if each.samples.begin.size]
+    computed = [one.windows for each in measurement.series if (one := run.series(each.series)).windows.size]
+    if not samples or not computed:
+        return []
+    own = min(float(each[0]) for each in computed), max(float(each[-1]) for each in computed)
+    there = min(float(each.begin[0]) for each in samples), max(float(each.end[-1]) for each in samples)
+    if there[0] + shift_s < own[1] and there[1] + shift_s > own[0]:
+        return []
+    needed = round(own[0] - there[0])
+    found = f"the measurement lasts from {_span(there)}, the run from {_span(own)}: no measured value falls on a computed one"
+    remedy = f"say shift_s in the map: {needed} if both begin together"
+    if told.map.shift_s == "find":
+        remedy += f"; or let it be looked for further away than {told.map.shift_range_s:g} s by shift_range_s"
+    return [Problem("apart", "shift_s", found, remedy=remedy, severity="warning", place=told.place("shift_s"))]
+
+
+def _span(ends: tuple[float, float]) -> str:
+    return " to ".join(format_time(seconds) for seconds in ends)
 
 
 def _doubts(each: OneSeries, told: MapFile) -> list[Problem]:
