@@ -213,6 +213,13 @@ def test_devices_are_chosen_by_their_names_and_those_of_their_stations():
     assert chosen("C", "track 2 km 0-10") == ["C bypassed", "track 2 km 0-10 dead"]
 
 
+def test_other_kinds_are_found_where_a_reserve_waits():
+    plants = [TWO_UNITS | {"reserve_units": 1, "reserve_after_s": 60.0}, station("B", 20.0)]
+    scenario = make_scenario(load("x", 5.0), substations=plants)
+    kinds = {case.kind for case in find_outages(wishing(scenario, kinds=["substation"])).cases}
+    assert kinds == {"base", "substation"}
+
+
 def test_an_unknown_device_is_told_with_the_nearest_one():
     with pytest.raises(InputError) as error:
         find_outages(wishing(small(), devices=["A 1 hihg_km", "C", "Z"]))

@@ -293,7 +293,7 @@ class _Finder:
         """Return what a substation takes while its reserve is awaited; by default in the time that is the worst for it."""
         from_s, lasts = self.begins_s, f"{station.reserve_after_s:g} s"
         if from_s is None:
-            from_s = self._worst_s[station.id]
+            from_s = self._worst_s.get(station.id, self.scenario.clock.start)  # not looked for where no unit is asked for
             why = f"when its units carry most over {lasts} with nothing out, by the root mean square"
         else:
             why = "as contingency.begins says"
