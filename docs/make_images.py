@@ -1,20 +1,27 @@
-"""Draw the figures of the README anew: voltages of a day on the real line, full coupling beside constant voltage, delays.
+"""Draw the figures of the README and of docs/sizing.md anew: voltages, coupling, delays, ratings, outages, variants.
 
 Not part of `make docs`: these figures change with the data that ship, the reference pages with the declarations.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from matplotlib.figure import Figure
 from PIL import Image
 
 import tractionpower as tp
+from tractionpower.io.scenario_files import load_scenario
+from tractionpower.reporting.contingency_figures import envelope_voltage
 from tractionpower.reporting.coupling_figure import compare_coupling
 from tractionpower.reporting.delay_graph import delay_graphs
+from tractionpower.reporting.outage_map import outage_maps
+from tractionpower.reporting.outages import Outages
+from tractionpower.reporting.ratings_figures import utilisation
 from tractionpower.reporting.run_data import RunData
 from tractionpower.reporting.style import save
+from tractionpower.reporting.sweep_figures import sweep_figures
 from tractionpower.reporting.voltage_figures import voltage_along_line
 
 IMAGES = Path(__file__).parent / "images"
@@ -62,7 +69,31 @@ def draw_delays() -> Figure:
     return delay_graphs(RunData(tp.feasibility(scenario), scenario))["delay_graph"]
 
 
+def draw_future() -> Iterator[tuple[str, Figure]]:
+    """Draw the study that docs/sizing.md sizes: ratings, outages, and what another unit at each end does; some minutes."""
+    loaded = load_scenario(IMAGES.parents[1] / "lines" / "cmk" / "study-2040.yaml")
+    scenario = loaded.scenario
+    utilised = utilisation(RunData(tp.size(scenario), scenario))
+    assert utilised is not None  # the study has ratings
+    yield "cmk-2040-utilisation.png", utilised
+    outages = Outages(tp.contingency(scenario, workers=2), scenario)
+    title = "CMK 2040"
+    envelope = envelope_voltage(outages, title)
+    assert envelope is not None
+    yield "cmk-2040-envelope.png", envelope
+    maps = dict(outage_maps(outages, title))
+    yield "cmk-2040-outages.png", maps["outages_by_km"]
+    out = tp.change(scenario, ["name=CMK 2040, Zawiercie bypassed", "supply.substations[Zawiercie].state=bypassed"])
+    vary = {
+        "supply.substations[Gora Wlodowska].units": [2, 3, 4],
+        "supply.contact_lines[5].type": ["2C120-2C", "2C120-2C+Cu225"],
+    }
+    yield "cmk-2040-variants.png", sweep_figures(tp.sweep(out, vary, library=loaded.library, workers=2), out)["sweep_maps"]
+
+
 if __name__ == "__main__":
+    for name, drawn in draw_future():
+        keep(drawn, name)
     keep(draw_delays(), "weak-delay-graph.png")
     keep(draw_coupling(), "cmk-coupling.png")
     keep(draw_line(), "cmk-voltage-along-line.png")
