@@ -1,7 +1,7 @@
 """The search itself: build more where a limit is missed, then less where that leaves all limits kept.
 
-What is tried is run on the cases that decide: those that miss a limit now, and those that came nearest to one. What is found
-in the end is run on all cases; if one of them misses a limit it counts among the deciding ones, and the search goes on.
+What is tried is run on few cases: more on those that miss a limit, less on those in which it is used most. What is found is
+run on all cases; one that misses a limit then is among those on which less is tried from then on, and the search goes on.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from typing import Protocol
 from tractionpower.studies.sizing_search.items import Design, Item, cost_of
 from tractionpower.studies.sizing_search.shortfalls import CaseFacts, Shortfall
 
-NEAR_PERCENT = 85.0
-"""A case in which a device has at least this utilisation, of what is allowed, is one of the deciding ones [%]."""
+MOST_LOADED = 3
+"""Cases in which an item is used most: less of it is tried on these."""
 
 BETTER = 1e-6
 """A step that lessens what is missed by no more than this does not help."""
@@ -64,14 +64,12 @@ class Climb:
         What may be varied.
     evaluator
         Runs designs.
-    allowed_percent
-        Highest utilisation that passes.
     design
         What has been found.
     steps
         How.
     facts
-        Facts of the cases; of those that do not decide, those of the design with which they were run last.
+        Facts of the cases, each of the design with which it was run last.
     verified
         Whether `facts` are those of all cases.
     stuck
@@ -80,13 +78,12 @@ class Climb:
 
     items: Mapping[str, Item]
     evaluator: Evaluator
-    allowed_percent: float = 100.0
     design: dict[str, int] = field(default_factory=dict)
     steps: list[Step] = field(default_factory=list)
     facts: dict[str, CaseFacts] = field(default_factory=dict)
     verified: bool = False
     stuck: tuple[Shortfall, ...] = ()
-    _deciding: set[str] = field(default_factory=set)
+    _betrayed: set[str] = field(default_factory=set)  # cases that missed a limit when all were run again
     _kept: set[str] = field(default_factory=set)  # items of which less has been refused since something was built
 
     def run(self) -> None:
@@ -120,12 +117,16 @@ class Climb:
         return cost_of(self.items, self.design)
 
     def _verify(self) -> None:
+        is_again = bool(self.facts)
         self.facts = self.evaluator.evaluate(self.design)
         self.verified = True
-        self._deciding |= {case for case, facts in self.facts.items() if facts.shortfalls or self._is_near(facts)}
+        if is_again:
+            self._betrayed |= self._missing
 
-    def _is_near(self, facts: CaseFacts) -> bool:
-        return max(facts.utilisation.values(), default=0.0) >= NEAR_PERCENT * self.allowed_percent / 100.0
+    @property
+    def _missing(self) -> set[str]:
+        """Cases that miss a limit."""
+        return {case for case, facts in self.facts.items() if facts.shortfalls}
 
     # -- more ----------------------------------------------------------------------------------------------------
 
@@ -165,8 +166,8 @@ class Climb:
         return next((k for k in range(now + 1, len(item.rungs)) if item.rungs[k].cost >= needed - BETTER), len(item.rungs) - 1)
 
     def _take(self, name: str, rung: int, why: str) -> None:
-        """Go over to another rung of an item and run the deciding cases."""
-        facts = self.evaluator.evaluate({**self.design, name: rung}, self._deciding)
+        """Go over to another rung of an item and run the cases that miss a limit."""
+        facts = self.evaluator.evaluate({**self.design, name: rung}, self._missing)
         self._adopt(name, rung, why)
         self.facts |= facts
 
@@ -179,16 +180,14 @@ class Climb:
     # -- less ----------------------------------------------------------------------------------------------------
 
     def _lessen(self) -> bool:
-        """Take the dearest item one rung down that the deciding cases do without; tell whether there was one."""
+        """Take the dearest item one rung down that the cases which load it most do without; tell whether there was one."""
         wasted = [item for item in self.items.values() if self._may_lessen(item)]
         for item in sorted(wasted, key=lambda item: (-self._saving(item), self._use(item), item.name)):
             if self.evaluator.spent:
                 return False
             rung = self.design.get(item.name, item.declared) - 1
             less = {**self.design, item.name: rung}
-            cases = {*self._deciding, *self._worst_cases(item)}
-            facts = self.evaluator.evaluate(less, cases)
-            self._deciding |= {case for case, found in facts.items() if found.shortfalls or self._is_near(found)}
+            facts = self.evaluator.evaluate(less, {*self._betrayed, *self._worst_cases(item)})
             if any(found.shortfalls for found in facts.values()):
                 self._kept.add(item.name)
                 continue
@@ -214,7 +213,7 @@ class Climb:
         devices = self._devices(item)
         return max((facts.utilisation.get(device, 0.0) for facts in self.facts.values() for device in devices), default=0.0)
 
-    def _worst_cases(self, item: Item, count: int = 2) -> list[str]:
+    def _worst_cases(self, item: Item) -> list[str]:
         devices = self._devices(item)
         used = {case: max(facts.utilisation.get(device, 0.0) for device in devices) for case, facts in self.facts.items()}
-        return sorted(used, key=lambda case: (-used[case], case))[:count]
+        return sorted(used, key=lambda case: (-used[case], case))[:MOST_LOADED]

@@ -132,7 +132,7 @@ def search(
     trials = Trials(
         scenario, library, items, CaseStore() if store is None else store, workers=workers, scheduler=scheduler, progress=progress
     )
-    climb = Climb(items, trials, scenario.sizing.utilisation_percent)
+    climb = Climb(items, trials)
     climb.run()
     last = {step.item: step.why for step in climb.steps}
     moved = [name for name in sorted(climb.design) if climb.design[name] != items[name].declared]
