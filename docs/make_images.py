@@ -35,7 +35,7 @@ OUTAGE = (
 """An express gains speed behind Idzikowice, where the next substations are some 20 km away, while trains come towards it."""
 TRAIN = "EIP 1406"
 
-SHADES = 64
+SHADES = 160
 """Colours of a file: lines and text need no more, and the page loads faster."""
 
 
