@@ -172,6 +172,8 @@ def plot(path: Path, most: int) -> None:
     few = cases[:12]
     timed(scenario, cases[:1])
     found = scaling(scenario, few, most)
+    for how, workers, seconds in found:
+        print(f"{len(few)} days, {how}, {workers}: {seconds:.1f} s")
     figure = Figure(figsize=(7.0, 4.2), layout="constrained")
     axes = figure.subplots()
     one = 3600.0 * len(few) / found[0][2]
