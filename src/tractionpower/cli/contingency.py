@@ -63,7 +63,8 @@ def contingency(
     from tractionpower.cli.console import warn_of_compilation
     from tractionpower.cli.contingency_summary import show
     from tractionpower.io.wording import counted
-    from tractionpower.studies.contingency.study import OutageStudy, run_into
+    from tractionpower.studies.contingency.study import OutageStudy
+    from tractionpower.studies.runner.into_folder import run_into
 
     call = call_study(study, changes, out, "contingency")
     grids = [word.strip() for word in grid.split(",")] if grid is not None else []

@@ -57,7 +57,8 @@ def sweep(
     """Compare variants of a study with the study as it is."""
     from tractionpower.cli.console import warn_of_compilation
     from tractionpower.cli.sweep_summary import show
-    from tractionpower.studies.sweep.study import SweepStudy, run_into
+    from tractionpower.studies.runner.into_folder import run_into
+    from tractionpower.studies.sweep.study import SweepStudy
 
     call = call_study(study, changes, out, "sweep")
     plan = _plan(call.scenario, (vary or [], cases, ranges or []), sample, seed)

@@ -11,7 +11,8 @@ from tractionpower.model.contingency import Contingency
 from tractionpower.results.results import Results
 from tractionpower.results.store import RunWriter
 from tractionpower.studies.cases.measure import measure
-from tractionpower.studies.contingency.study import OutageStudy, contingency, run_into
+from tractionpower.studies.contingency.study import OutageStudy, contingency
+from tractionpower.studies.runner.into_folder import run_into
 
 LEAKY = [{"from_km": 0.0, "to_km": 20.0, "resistance_ohm_per_km": 0.02, "leakage_s_per_km": 0.1}]
 

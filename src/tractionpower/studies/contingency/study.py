@@ -24,6 +24,7 @@ from tractionpower.studies.contingency.outages import find_outages
 from tractionpower.studies.contingency.summary import figures_of, summary_of
 from tractionpower.studies.contingency.unfinished import note_unfinished
 from tractionpower.studies.runner.case import COMPLETE
+from tractionpower.studies.runner.into_folder import run_into
 from tractionpower.studies.runner.outcomes import CasesRun, write_cases
 from tractionpower.studies.runner.run import Told, run_cases
 from tractionpower.studies.runner.store import CaseStore
@@ -218,23 +219,3 @@ def contingency(
     if run_into(outages, writer, **how).interrupted:
         raise KeyboardInterrupt
     return Results.open(folder)
-
-
-def run_into(outages: OutageStudy, writer: RunWriter, *, full_tables: Path | None = None, **how: Any) -> OutageOutcome:
-    """Run a study into a folder; `how` are the keywords of `OutageStudy.execute`.
-
-    Where `full_tables` is given, each case also leaves the whole results of its run in a folder of its own there.
-
-    Each case is kept beside the results as soon as it is there, so the same call goes on where an earlier one was stopped,
-    and runs again what failed.
-    """
-    try:
-        outcome = outages.execute(writer, CaseStore(writer.beside_parts, full_tables), **how)
-    except BaseException:
-        writer.discard()  # not what is kept of the cases
-        raise
-    if outcome.interrupted:
-        writer.keep_unfinished(outcome.run, outcome.key_figures)
-    else:
-        writer.finish(outcome.run, outcome.key_figures, is_continued=outcome.cases.failed > 0)
-    return outcome

@@ -21,6 +21,7 @@ from tractionpower.studies.cases.judgement import Check, checks_of, own_verdicts
 from tractionpower.studies.cases.measure import measure
 from tractionpower.studies.contingency.envelope import Delays
 from tractionpower.studies.runner.case import COMPLETE, FLAGGED, Case
+from tractionpower.studies.runner.into_folder import run_into
 from tractionpower.studies.runner.outcomes import CasesRun, rows_table, write_cases
 from tractionpower.studies.runner.run import run_cases
 from tractionpower.studies.runner.store import CaseStore
@@ -153,7 +154,11 @@ class SweepOutcome:
         All that was run.
     run
         What ``run.json`` holds, without the files.
+    key_figures
+        None: those of each case are in the tables.
     """
+
+    key_figures: list[dict[str, Any]] = []  # noqa: RUF012 - never filled
 
     def __init__(self, study: SweepStudy, cases: CasesRun, scheduler: str | None) -> None:
         scenario, plan, self.cases = study.scenario, study.plan, cases
@@ -257,21 +262,3 @@ def sweep(
     if run_into(study, writer, **how).interrupted:
         raise KeyboardInterrupt
     return Results.open(folder)
-
-
-def run_into(study: SweepStudy, writer: RunWriter, *, full_tables: Path | None = None, **how: Any) -> SweepOutcome:
-    """Run a sweep into a folder; `how` are the keywords of `SweepStudy.execute`.
-
-    Each case is kept beside the results as soon as it is there, so the same call goes on where an earlier one was stopped,
-    and runs again what failed. With `full_tables` the whole results of each case go into a folder of it.
-    """
-    try:
-        outcome = study.execute(writer, CaseStore(writer.beside_parts, full_tables), **how)
-    except BaseException:
-        writer.discard()  # not what is kept of the cases
-        raise
-    if outcome.interrupted:
-        writer.keep_unfinished(outcome.run)
-    else:
-        writer.finish(outcome.run, [], is_continued=outcome.cases.failed > 0)
-    return outcome
