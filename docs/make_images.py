@@ -13,16 +13,16 @@ from PIL import Image
 
 import tractionpower as tp
 from tractionpower.io.scenario_files import load_scenario
-from tractionpower.reporting.contingency_figures import envelope_voltage
-from tractionpower.reporting.coupling_figure import compare_coupling
-from tractionpower.reporting.delay_graph import delay_graphs
-from tractionpower.reporting.outage_map import outage_maps
-from tractionpower.reporting.outages import Outages
-from tractionpower.reporting.ratings_figures import utilisation
-from tractionpower.reporting.run_data import RunData
-from tractionpower.reporting.style import save
-from tractionpower.reporting.sweep_figures import sweep_figures
-from tractionpower.reporting.voltage_figures import voltage_along_line
+from tractionpower.reporting.facts.outages import Outages
+from tractionpower.reporting.facts.run_data import RunData
+from tractionpower.reporting.figures.base.style import save
+from tractionpower.reporting.figures.delays.delay_graph import delay_graphs
+from tractionpower.reporting.figures.many.contingency_figures import envelope_voltage
+from tractionpower.reporting.figures.many.outage_map import outage_maps
+from tractionpower.reporting.figures.many.sweep_figures import sweep_figures
+from tractionpower.reporting.figures.supply.ratings_figures import utilisation
+from tractionpower.reporting.figures.supply.voltage_figures import voltage_along_line
+from tractionpower.reporting.figures.trains.coupling_figure import compare_coupling
 
 IMAGES = Path(__file__).parent / "images"
 

@@ -59,7 +59,7 @@ def test_headings_of_the_page_stand_for_their_fields():
 
 
 def test_the_sheets_and_figures_that_the_page_names_exist():
-    from tractionpower.reporting.figures import GRAPHS, SINGLE  # noqa: PLC0415
+    from tractionpower.reporting.figures.of_run import GRAPHS, SINGLE  # noqa: PLC0415
 
     named = {name.removesuffix(".png") for name in re.findall(r"`(\w+\.png)`", FEASIBILITY)}
     assert named == {"delay_graph", "lost_time", "delays_by_cause"}

@@ -17,7 +17,7 @@ from train_study import FILES, write_train_study
 
 from tractionpower.cli import main
 from tractionpower.cli.feasibility_summary import headline, show
-from tractionpower.reporting.workbook.feasibility import verdict_in_words
+from tractionpower.reporting.workbook.feasibility.feasibility import verdict_in_words
 from tractionpower.results.results import Results
 from tractionpower.studies import feasibility
 from tractionpower.studies.feasibility import study as whole

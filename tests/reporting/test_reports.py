@@ -35,7 +35,7 @@ def writers(monkeypatch):
     """Return a function that puts other writers of figures and workbook into their places."""
 
     def put(figures=write_folder, workbook=write_file):
-        monkeypatch.setattr("tractionpower.reporting.figures.write_figures", figures)
+        monkeypatch.setattr("tractionpower.reporting.figures.of_run.write_figures", figures)
         monkeypatch.setattr("tractionpower.reporting.workbook.write_workbook", workbook)
 
     return put

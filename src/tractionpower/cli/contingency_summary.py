@@ -51,7 +51,7 @@ def show(run: Mapping[str, Any]) -> None:
 def headline(told: Mapping[str, Any]) -> str:
     """Return in one line whether all holds."""
     from tractionpower.io.wording import counted
-    from tractionpower.reporting.outages import outcome_words
+    from tractionpower.reporting.facts.outages import outcome_words
 
     missing, outages = len(told["not_computed"]), told["outages"]
     left = f"; {counted(missing, 'case')} could not be computed" if missing else ""
@@ -105,7 +105,7 @@ def _left_out(console: Console, told: Mapping[str, Any]) -> None:
     if len(told["not_computed"]) > MOST_REASONS:
         console.print(f"... and {len(told['not_computed']) - MOST_REASONS} more that could not be computed, see table cases")
     if told["unrated"]:
-        from tractionpower.reporting.device_words import counted_devices
+        from tractionpower.reporting.facts.device_words import counted_devices
 
         kinds = ", ".join(counted_devices(count, kind) for kind, count in told["unrated"].items())
         console.print(f"without a rating, so not judged: {kinds}")

@@ -39,8 +39,8 @@ def curves(
     from tractionpower.io.rolling_stock import load_train
     from tractionpower.model.limits import known_systems, system_voltages
     from tractionpower.movement.curves import drive_curves
-    from tractionpower.reporting.curve_figures import curves_figure, has_drive, resistance_figure, write_curves_csv
-    from tractionpower.reporting.style import png_names, save
+    from tractionpower.reporting.figures.base.style import png_names, save
+    from tractionpower.reporting.figures.trains.curve_figures import curves_figure, has_drive, resistance_figure, write_curves_csv
 
     limits = shipped_limits()
     if system not in known_systems(limits):
@@ -101,7 +101,7 @@ def _faster_curves(train: Train, vehicles: Sequence[Vehicle], limits: Sequence[L
 
 def _balance(nominal: TrainCurves, beyond: Callable[[], TrainCurves | None]) -> str:
     """Return the balancing speed in words; the curve goes on beyond the top speed where it is known there."""
-    from tractionpower.reporting.curve_figures import balancing_speed
+    from tractionpower.reporting.figures.trains.curve_figures import balancing_speed
 
     top, speed = float(nominal.speed_mps[-1]), balancing_speed(nominal)
     if speed is not None:
@@ -116,7 +116,7 @@ def _balance(nominal: TrainCurves, beyond: Callable[[], TrainCurves | None]) -> 
 def _show(name: str, nominal: TrainCurves, drawn: TrainCurves, beyond: Callable[[], TrainCurves | None]) -> None:
     """Print what one asks first of a train: how it starts, how fast it can run, what it takes."""
     from tractionpower.cli.console import new_console
-    from tractionpower.reporting.curve_figures import has_drive, starting_gradient
+    from tractionpower.reporting.figures.trains.curve_figures import has_drive, starting_gradient
 
     console = new_console()
     curve = nominal.curves[0]

@@ -117,7 +117,7 @@ def _compute(call: StudyCall, force: bool, **options: Any) -> tuple[JourneyOutco
 def _write_figures(outcome: JourneyOutcome, scenario: Scenario, folder: Path, shown: Sequence[str]) -> OutputError | None:
     """Write the figures; return what hinders that, so that the tables are printed first."""
     from tractionpower.errors import OutputError
-    from tractionpower.reporting.journeys import write_journey_figures
+    from tractionpower.reporting.figures.trains.journeys import write_journey_figures
 
     try:
         write_journey_figures(outcome, scenario, folder / "figures", shown)

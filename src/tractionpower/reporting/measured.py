@@ -20,7 +20,7 @@ def write_measured_reports(results: Results, folder: Path) -> list[Path]:
     OutputError
         If a report cannot be written; the other one is written all the same.
     """
-    from tractionpower.reporting.measured_figures import write_measured_figures  # noqa: PLC0415 - matplotlib is slow to import
+    from tractionpower.reporting.figures.measured_figures import write_measured_figures  # noqa: PLC0415 - matplotlib is slow to import
     from tractionpower.reporting.workbook.measured import write_measured_workbook  # noqa: PLC0415
 
     paths: list[Path] = []

@@ -53,8 +53,9 @@ def write_reports(results: Results, scenario: Scenario, folder: Path) -> list[Pa
 
 def _remove_other_figures(folder: Path, drawn: set[Path]) -> None:
     """Remove the figures that another command left in a folder of figures; files that no command writes stay."""
-    from tractionpower.reporting import compare_figures, figures, sweep_figures
-    from tractionpower.reporting.outage_map import MAP
+    from tractionpower.reporting.figures import of_run as figures
+    from tractionpower.reporting.figures.many import compare_figures, sweep_figures
+    from tractionpower.reporting.figures.many.outage_map import MAP
 
     single = (*figures.SINGLE, *figures.GRAPHS, *figures.OUTAGES, *sweep_figures.NAMES, *compare_figures.NAMES)
     ours = {*folder.glob(f"{MAP}*.png"), *folder.glob(f"{figures.TRAINS}/*.png"), *(folder / f"{name}.png" for name in single)}
@@ -67,9 +68,9 @@ def _remove_other_figures(folder: Path, drawn: set[Path]) -> None:
 
 def _figure_writer(kind: str) -> FigureWriter:
     """Return what writes the figures of results of a kind."""
-    from tractionpower.reporting.compare_figures import write_compare_figures
-    from tractionpower.reporting.figures import write_figures, write_outage_figures
-    from tractionpower.reporting.sweep_figures import write_sweep_figures
+    from tractionpower.reporting.figures.many.compare_figures import write_compare_figures
+    from tractionpower.reporting.figures.many.sweep_figures import write_sweep_figures
+    from tractionpower.reporting.figures.of_run import write_figures, write_outage_figures
 
     writers = {"contingency": write_outage_figures, "sweep": write_sweep_figures, "compare": write_compare_figures}
     return writers.get(kind, write_figures)

@@ -1,7 +1,7 @@
 """A list within a row is told in a cell, a long one by its ends."""
 
 from tractionpower.model.loads import Load
-from tractionpower.reporting.workbook.inputs import MOST_ROWS, in_words
+from tractionpower.reporting.workbook.common.inputs import MOST_ROWS, in_words
 
 
 def profile(count):

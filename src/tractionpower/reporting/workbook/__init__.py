@@ -24,7 +24,9 @@ def write_workbook(results: Results, scenario: Scenario, path: Path) -> Path:
     path
         Name of the file, ``report.xlsx``.
     """
-    from tractionpower.reporting.workbook import book, compare, outage_book, sweep
+    from tractionpower.reporting.workbook.outages import outage_book
+    from tractionpower.reporting.workbook.run import book
+    from tractionpower.reporting.workbook.variants import compare, sweep
 
     builders = {"contingency": outage_book.build, "sweep": sweep.build, "compare": compare.build}
     build = builders.get(str(results.run.get("kind") or ""), book.build)

@@ -10,10 +10,10 @@ import numpy as np
 import pandas as pd
 from openpyxl import Workbook
 
-from tractionpower.reporting.workbook.book import save_as
-from tractionpower.reporting.workbook.cells import Styles, shorten
-from tractionpower.reporting.workbook.page import Block, Column, Page, heading_of
-from tractionpower.reporting.workbook.plots import COLOURS, Line, draw, scatter, show_clock
+from tractionpower.reporting.workbook.frame.cells import Styles, shorten
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page, heading_of
+from tractionpower.reporting.workbook.frame.plots import COLOURS, Line, draw, scatter, show_clock
+from tractionpower.reporting.workbook.run.book import save_as
 from tractionpower.results.columns import TABLES
 from tractionpower.results.results import Results
 

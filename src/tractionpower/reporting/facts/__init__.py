@@ -1,0 +1,1 @@
+"""What figures and workbook are both made of: tables and places of a run, outages, variants."""

@@ -1,0 +1,1 @@
+"""The figures: of a run, of its supply, trains and delays, of studies of many cases."""

@@ -1,0 +1,1 @@
+"""Figures of delays and of time lost to low voltage."""

@@ -1,0 +1,1 @@
+"""Figures of studies of many cases: outages, variants, runs side by side."""

@@ -1,0 +1,234 @@
+"""Figures of a sweep: curves over one input, maps over two, bars of differences and clouds over many."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.facts.sweep_data import WORDS, SweepData
+from tractionpower.reporting.figures.base.axes import draw_limits
+from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, STYLE, VERMILION, new_figure, save_all
+from tractionpower.results.results import Results
+from tractionpower.studies.sweep.cases import number_of
+from tractionpower.studies.sweep.differences import HIGHER_IS_BETTER, NOT_JUDGED
+
+WIDTH = 10.5
+MOST_PANELS = 4
+"""Figures that are drawn, one in each panel."""
+
+MOST_BARS = 25
+"""Cases with bars; with more, those that differ most from the base."""
+
+MOST_LETTERS = 48
+MOST_CELLS = 150
+"""Cells of a map beyond which the values are not written into them."""
+
+MOST_KEYS = 5
+"""Inputs over which clouds are drawn."""
+
+FEWEST_POINTS = 8
+"""Cases from which on a cloud of points says something."""
+
+VOLTAGES = ("lowest_voltage_v",)
+"""Figures that limits of the voltage are drawn with."""
+
+
+NAMES = ("sweep_curves", "sweep_maps", "sweep_differences", "sweep_scatter")
+
+
+def write_sweep_figures(results: Results, scenario: Scenario, folder: Path) -> list[Path]:
+    """Write the figures of a sweep as PNG into `folder` and return their paths."""
+    return save_all(sweep_figures(results, scenario), folder, NAMES)
+
+
+def sweep_figures(results: Results, scenario: Scenario) -> dict[str, Figure]:
+    """Return the figures of a sweep by name; nothing where no figure differs between cases."""
+    data = SweepData(results, scenario)
+    if not data.figures(1):
+        return {}
+    sets = data.changes.notna().sum(axis=1)
+    is_grid = len(data.changes.columns) == 2 and bool((sets == 2).all()) and not data.changes.duplicated().any()
+    with mpl.rc_context(STYLE):
+        if len(data.changes.columns) == 1:
+            return {"sweep_curves": _curves(data)}
+        if is_grid and len(data.changes) == np.prod([len(values) for values in data.keys.values()]):
+            return {"sweep_maps": _maps(data)}
+        drawn = {} if data.base is None else {"sweep_differences": _bars(data)}
+        numeric = [path for path in data.paths if all(number_of(value) is not None for value in data.changes[path].dropna())]
+        if numeric and len(data.changes) >= FEWEST_POINTS:
+            drawn["sweep_scatter"] = _clouds(data, numeric[:MOST_KEYS])
+        return drawn
+
+
+def _curves(data: SweepData) -> Figure:
+    """Draw figures over the values of the one input that is varied; the base is a dashed line."""
+    path = data.paths[0]
+    values = data.keys[path]
+    numbers = [number_of(value) for value in values]
+    is_numeric = all(number is not None for number in numbers)
+    at = dict(zip(values, numbers if is_numeric else range(len(values)), strict=True))
+    shown = data.figures(MOST_PANELS)
+    figure = new_figure(WIDTH, 1.5 + 1.9 * len(shown))
+    panels = list(np.atleast_1d(figure.subplots(len(shown), 1, sharex=True)))
+    rows = data.measured.set_index("case").join(data.changes, how="inner")
+    rows = rows.assign(_at=[float(at[value] or 0.0) for value in rows[path]]).sort_values("_at", kind="stable")
+    for axes, name in zip(panels, shown, strict=True):
+        style: Any = {"marker": "o", "markersize": 4.5, "linewidth": 1.5 if is_numeric else 0.0}
+        axes.plot(rows["_at"], rows[name], color=BLUE, label="variants", **style)
+        if data.base is not None and pd.notna(data.base[name]):
+            axes.axhline(float(data.base[name]), color=VERMILION, linestyle=(0, (5, 3)), linewidth=1.3, label="base")
+        axes.set_ylabel(WORDS[name])
+        if name in VOLTAGES:
+            draw_limits(axes, data.scenario)
+    _mark_missing(panels, data, path, at)
+    if not is_numeric or len(values) <= 12:
+        turned: Any = {"rotation": 30, "ha": "right"} if sum(map(len, values)) > 90 else {}
+        panels[-1].set_xticks([float(at[value] or 0.0) for value in values], values, **turned)
+    panels[-1].set_xlabel(data.names[path])
+    return _finished(figure, panels, f"{data.title}: {data.names[path]}")
+
+
+def _mark_missing(panels: list[Axes], data: SweepData, path: str, at: dict[str, Any]) -> None:
+    """Mark at the bottom where a case has no figures."""
+    missing = data.cases[~data.cases["case"].isin(data.measured["case"])].set_index("case").join(data.changes, how="inner")
+    if len(missing):
+        x = [float(at[value] or 0.0) for value in missing[path]]
+        style: Any = {"color": INK, "transform": panels[-1].get_xaxis_transform(), "clip_on": False}
+        panels[-1].plot(x, [0.03] * len(x), "x", label="refused or failed", **style)
+
+
+def _maps(data: SweepData) -> Figure:
+    """Draw a map for each figure over the two inputs that are varied, darker where it is worse."""
+    across, down = data.paths
+    if len(data.keys[down]) > len(data.keys[across]):
+        across, down = down, across
+    columns, rows = data.keys[across], data.keys[down]
+    shown = data.figures(MOST_PANELS)
+    wide = 2 if len(shown) > 1 and len(columns) <= 12 else 1
+    high = -(-len(shown) // wide)
+    figure = new_figure(WIDTH, 1.0 + high * max(2.2, 0.34 * len(rows) + 1.1), between=0.06)
+    found = data.changes.join(data.measured.set_index("case"))
+    for number, name in enumerate(shown):
+        axes = figure.add_subplot(high, wide, number + 1)
+        grid = found.pivot_table(index=down, columns=across, values=name, aggfunc="first").reindex(index=rows, columns=columns)
+        _draw_map(axes, grid.to_numpy(float), name, figure)
+        axes.set_title(WORDS[name].replace("\n", " "), loc="left", fontsize=9)
+        crowded = max(map(len, columns)) * len(columns) > 60
+        turned: Any = {"rotation": 45, "ha": "right", "rotation_mode": "anchor"} if crowded else {}
+        axes.set_xticks(range(len(columns)), columns, **turned)
+        axes.set_yticks(range(len(rows)), rows)
+        axes.set_xlabel(data.names[across])
+        axes.set_ylabel(data.names[down])
+    figure.suptitle(f"{data.title}: {data.names[across]} and {data.names[down]}", x=0.01, ha="left", fontsize=11)
+    return figure
+
+
+def _draw_map(axes: Axes, values: np.ndarray, name: str, figure: Figure) -> None:
+    """Draw one map; a cell without a value is hatched."""
+    axes.grid(visible=False)
+    axes.set_facecolor("#eeeeee")
+    colours = mpl.colormaps["Blues" if name in NOT_JUDGED else "YlOrRd_r" if name in HIGHER_IS_BETTER else "YlOrRd"]
+    image = axes.imshow(values, aspect="auto", cmap=colours)
+    figure.colorbar(image, ax=axes, pad=0.02)
+    for row, column in np.argwhere(np.isnan(values)):
+        axes.text(column, row, "none", ha="center", va="center", fontsize=7.5, color=GREY)
+    if values.size > MOST_CELLS:
+        return
+    digits = _digits(values)
+    for row, column in np.argwhere(~np.isnan(values)):
+        red, green, blue, _ = image.cmap(image.norm(values[row, column]))
+        ink = INK if 0.3 * red + 0.6 * green + 0.1 * blue > 0.5 else "white"
+        axes.text(column, row, f"{values[row, column]:z.{digits}f}", ha="center", va="center", fontsize=7.5, color=ink)
+
+
+def _digits(values: np.ndarray) -> int:
+    """Return how many decimals tell the values of a map apart."""
+    spread = float(np.nanmax(values) - np.nanmin(values)) if np.isfinite(values).any() else 0.0
+    return 0 if spread >= 20.0 else 1 if spread >= 2.0 else 2
+
+
+def _bars(data: SweepData) -> Figure:
+    """Draw differences from the base, a bar for each case: those that differ most, the worst above."""
+    shown = data.figures(MOST_PANELS)
+    rows = data.results.table("differences").astype({"case": str, "figure": str})
+    wide = rows[rows["figure"].isin(shown)].pivot_table(index="case", columns="figure", values="difference", aggfunc="first")
+    spans = wide.abs().max().replace(0.0, np.nan)
+    kept = (wide.abs() / spans).max(axis=1).sort_values(ascending=False, kind="stable").index[:MOST_BARS]
+    first = shown[0]
+    order = wide.loc[kept].sort_values(first, ascending=first not in HIGHER_IS_BETTER, kind="stable")
+    labels, told = _labels(data, list(order.index))
+    figure = new_figure(WIDTH, 1.6 + 0.24 * len(order))
+    panels = list(np.atleast_1d(figure.subplots(1, len(shown), sharey=True)))
+    for axes, name in zip(panels, shown, strict=True):
+        sign = -1.0 if name in HIGHER_IS_BETTER else 1.0
+        worse = sign * order[name].fillna(0.0) > 0.0
+        neutral = name in NOT_JUDGED
+        colours = [GREY if neutral else VERMILION if bad else BLUE for bad in worse]
+        axes.barh(range(len(order)), order[name].fillna(0.0), color=colours, height=0.7)
+        axes.axvline(0.0, color=INK, linewidth=0.8)
+        axes.set_xlabel(f"{WORDS[name]}\nless that of the base", fontsize=8)
+        axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
+        axes.grid(visible=False, axis="y")
+        axes.set_axisbelow(True)
+    panels[0].set_yticks(range(len(order)), labels, fontsize=7.5)
+    panels[0].set_ylabel(told, fontsize=7.5)
+    left = len(wide) - len(order)
+    more = f"; {left} cases that differ less are not drawn" if left else ""
+    figure.suptitle(f"{data.title}: differences from the base (red: worse, blue: better){more}", x=0.01, ha="left", fontsize=11)
+    return figure
+
+
+def _labels(data: SweepData, cases: list[str]) -> tuple[list[str], str]:
+    """Return labels of cases and what is said of all of them: their values alone where all set the same inputs."""
+    changes = data.changes.loc[cases]
+    if changes.notna().all(axis=None):
+        texts = [", ".join(_short(str(value)) for value in changes.loc[case]) for case in cases]
+        told = f"case: {', '.join(data.names[path] for path in data.paths)}"
+    else:
+        subjects = dict(zip(data.cases["case"], data.cases["subject"], strict=True))
+        texts, told = [subjects[case] for case in cases], "case"
+    labels = [f"{case}: {text}" for case, text in zip(cases, texts, strict=True)]
+    return [text if len(text) <= MOST_LETTERS else text[: MOST_LETTERS - 1] + "…" for text in labels], told
+
+
+def _short(value: str) -> str:
+    number = number_of(value)
+    return value if number is None else f"{number:.4g}"
+
+
+def _clouds(data: SweepData, paths: list[str]) -> Figure:
+    """Draw each figure over each input, a point for each case."""
+    shown = data.figures(MOST_PANELS)
+    figure = new_figure(WIDTH, 1.0 + 2.0 * len(shown))
+    grid = figure.subplots(len(shown), len(paths), sharey="row", sharex="col", squeeze=False)
+    rows = data.changes.join(data.measured.set_index("case"), how="inner")
+    for line, name in zip(grid, shown, strict=True):
+        for axes, path in zip(line, paths, strict=True):
+            own = rows.dropna(subset=[path, name])
+            x = [number_of(value) for value in own[path]]
+            axes.plot(x, own[name], "o", color=BLUE, markersize=3.5, alpha=0.7, markeredgewidth=0.0)
+            if data.base is not None and pd.notna(data.base[name]):
+                axes.axhline(float(data.base[name]), color=VERMILION, linestyle=(0, (5, 3)), linewidth=1.2)
+        line[0].set_ylabel(WORDS[name])
+    for axes, path in zip(grid[-1], paths, strict=True):
+        axes.set_xlabel(data.names[path])
+        axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
+    title = f"{data.title}: figures of {len(rows)} cases over what is varied (dashed: base)"
+    figure.suptitle(title, x=0.01, ha="left", fontsize=11)
+    return figure
+
+
+def _finished(figure: Figure, panels: list[Axes], title: str) -> Figure:
+    figure.suptitle(title, x=0.01, ha="left", fontsize=11)
+    found: dict[str, Any] = {}
+    for axes in panels:
+        found |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+    figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=3, fontsize=8)
+    return figure

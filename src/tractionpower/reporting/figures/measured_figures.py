@@ -1,0 +1,156 @@
+"""A measurement and a run in one figure: both over time or place, the error below, one against the other beside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from tractionpower.reporting.facts.series import peaks_kept
+from tractionpower.reporting.figures.base.axes import clock_label, set_clock
+from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, STYLE, VERMILION, new_figure, png_names, save
+from tractionpower.results.results import Results
+
+Array = NDArray[Any]
+
+WIDTH, HEIGHT = 11.7, 6.0
+"""Size of a figure [inches]."""
+
+MOST_FIGURES = 60
+MOST_POINTS = 6000
+"""Points of a line; of more the peaks are kept."""
+
+MOST_DOTS = 8000
+"""Points of the scatter; of more every n-th is drawn."""
+
+SHIFT = "shift"
+"""Name of the figure of the shift."""
+
+
+def write_measured_figures(results: Results, folder: Path) -> list[Path]:
+    """Write the figures of a comparison with a measurement as PNG into `folder` and return their paths."""
+    figures = dict(_figures(results))
+    names = png_names(figures)
+    paths = [save(figure, folder / names[name]) for name, figure in figures.items()]
+    for stale in set(folder.glob("*.png")) - set(paths):
+        stale.unlink(missing_ok=True)
+    return paths
+
+
+def _figures(results: Results) -> Iterator[tuple[str, Figure]]:
+    rows, errors = results.table("measured"), results.table("measured_errors")
+    told = results.run.get("measured", {})
+    title = str(told.get("name") or told.get("file") or results.run.get("name", ""))
+    if "measured_shift" in results.tables:
+        yield SHIFT, shift_figure(results.table("measured_shift"), told, title)
+    for line in errors.head(MOST_FIGURES).itertuples():
+        own = rows[rows["series"] == line.series]
+        if own["error"].notna().any():
+            yield str(line.series), overlay(own, line, title)
+
+
+def overlay(rows: pd.DataFrame, figures: Any, title: str) -> Figure:
+    """Draw one series: measured and computed above, the error below, one against the other on the right.
+
+    Parameters
+    ----------
+    rows
+        Its rows of table ``measured``.
+    figures
+        Its row of table ``measured_errors``.
+    title
+        Name of the measurement.
+    """
+    in_time = bool(rows["time_s"].notna().any())
+    x = rows["time_s" if in_time else "position_km"].to_numpy(float)
+    measured, computed = rows["measured"].to_numpy(float), rows["computed"].to_numpy(float)
+    label = f"{str(figures.quantity).rpartition('_')[0].replace('_', ' ')} [{figures.unit}]"
+    with mpl.rc_context(STYLE):
+        figure = new_figure(WIDTH, HEIGHT, 0.05)
+        grid = figure.add_gridspec(2, 2, width_ratios=(2.6, 1.0), height_ratios=(2.0, 1.0))
+        above = figure.add_subplot(grid[0, 0])
+        below = figure.add_subplot(grid[1, 0], sharex=above)
+        _line(above, x, measured, VERMILION, "measured")
+        _line(above, x, computed, BLUE, "computed")
+        above.set_ylabel(label)
+        above.legend(loc="best", fontsize=8)
+        above.tick_params(labelbottom=False)
+        below.axhline(0.0, color=INK, linewidth=0.6)
+        _line(below, x, computed - measured, GREY, "error")
+        below.set_ylabel(f"computed less\nmeasured [{figures.unit}]")
+        if in_time:
+            set_clock(below, float(np.nanmin(x)), float(np.nanmax(x)))
+            below.set_xlabel(clock_label(below))
+        else:
+            below.set_xlabel("place [km]")
+        _scatter(figure.add_subplot(grid[0, 1]), measured, computed, str(figures.unit))
+        _tell(figure.add_subplot(grid[1, 1]), figures)
+        figure.suptitle(f"{title}: {figures.series}", x=0.01, ha="left", fontsize=11)
+    return figure
+
+
+def shift_figure(search: pd.DataFrame, told: dict[str, Any], title: str) -> Figure:
+    """Draw the correlation over the shift of the clock."""
+    shifts, correlation = search["shift_s"].to_numpy(float), search["correlation"].to_numpy(float)
+    with mpl.rc_context(STYLE):
+        figure = new_figure(8.0, 4.0)
+        axes = figure.add_subplot()
+        axes.plot(shifts, correlation, color=BLUE, linewidth=1.2)
+        if told.get("correlation") is not None:
+            axes.axvline(told["shift_s"], color=VERMILION, linewidth=1.0)
+            words = f"{told['shift_s']:+.2f} s, correlation {told['correlation']:.3f}"
+            axes.annotate(words, (told["shift_s"], 0.02), (4, 0), xycoords=("data", "axes fraction"), textcoords="offset points",
+                          fontsize=8, color=INK)  # fmt: skip
+        axes.set_xlabel("shift: added to the times of the measurement [s]")
+        axes.set_ylabel("correlation of measured and computed")
+        axes.set_title(f"{title}: shift of the clock", loc="left", fontsize=11)
+    return figure
+
+
+def _line(axes: Axes, x: Array, values: Array, colour: str, name: str) -> None:
+    kept = peaks_kept(values, MOST_POINTS)
+    if len(kept) < len(values):
+        # Ends of gaps stay, so that no line is drawn across one.
+        missing = np.isnan(values)
+        edges = np.flatnonzero(missing[1:] != missing[:-1])
+        kept = np.unique(np.concatenate([kept, edges, edges + 1])).astype(np.intp)
+    axes.plot(x[kept], values[kept], color=colour, linewidth=1.0, label=name, alpha=0.9)
+
+
+def _scatter(axes: Axes, measured: Array, computed: Array, unit: str) -> None:
+    both = np.flatnonzero(np.isfinite(measured) & np.isfinite(computed))
+    both = both[:: max(1, len(both) // MOST_DOTS)]
+    ends = [min(measured[both].min(), computed[both].min()), max(measured[both].max(), computed[both].max())]
+    margin = 0.03 * max(ends[1] - ends[0], 1e-6)
+    ends = [ends[0] - margin, ends[1] + margin]
+    axes.plot(ends, ends, color=GREY, linewidth=0.8)
+    axes.plot(measured[both], computed[both], ".", color=BLUE, markersize=2.0, alpha=0.4, rasterized=True)
+    axes.set_xlim(*ends)
+    axes.set_ylim(*ends)
+    axes.set_aspect("equal")
+    axes.set_xlabel(f"measured [{unit}]")
+    axes.set_ylabel(f"computed [{unit}]")
+
+
+def _tell(axes: Axes, figures: Any) -> None:
+    """Write the errors in words."""
+    unit = figures.unit
+    lines = [
+        f"mean error {figures.mean_error:+.4g} {unit}",
+        f"RMS error {figures.rms_error:.4g} {unit} ({figures.relative_percent:.2f} % of measured)",
+        f"correlation {figures.correlation:.4f}",
+        f"lowest {figures.lowest_measured:.5g} measured, {figures.lowest_computed:.5g} {unit} computed",
+        f"highest {figures.highest_measured:.5g} measured, {figures.highest_computed:.5g} {unit} computed",
+    ]
+    if np.isfinite(figures.energy_error_percent):
+        lines.append(f"energy {figures.energy_error_percent:+.2f} % of {figures.energy_measured_kwh:.1f} kWh")
+    lines.append(f"{figures.rows} rows, {figures.share_percent:.1f} % of the computed ones")
+    axes.axis("off")
+    axes.text(0.0, 1.0, "\n".join(lines), va="top", fontsize=8, transform=axes.transAxes, linespacing=1.5)

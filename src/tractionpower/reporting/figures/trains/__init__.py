@@ -1,0 +1,1 @@
+"""Figures of trains: train graph, single trains, theoretical journeys, curves of vehicles."""

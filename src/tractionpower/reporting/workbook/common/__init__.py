@@ -1,0 +1,1 @@
+"""Sheets of every workbook: cover, limits, inputs, definitions."""

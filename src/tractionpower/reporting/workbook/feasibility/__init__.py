@@ -1,0 +1,1 @@
+"""Sheets on the timetable: verdict, remedies, delays, sections, lost time."""

@@ -1,0 +1,127 @@
+"""What the sheets tell, gathered: the run, its figures by place, its tables, limits."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import pandas as pd
+
+from tractionpower.model.limits import Limit, find_limit
+from tractionpower.model.scenario import Scenario
+from tractionpower.model.timetable import TrainRun
+from tractionpower.reporting.facts.places import LinePlaces
+from tractionpower.results.results import Results
+
+KNOWN_AS = {
+    "verified": "verified against the text of its source",
+    "secondary": "secondary: from a source that quotes it",
+    "recalled": "recalled from memory",
+    "user": "given by the user",
+}
+"""How the value of a limit is known, by its status."""
+
+STATES = {
+    "before": "left before the clock",
+    "left": "left the line",
+    "stays": "stays at its end",
+    "on_line": "still on the line at the end",
+    "outside": "did not enter",
+    "stuck": "stuck on the line",
+}
+"""What became of a train, by the status in ``run.json``."""
+
+
+def limit_in_words(name: str) -> str:
+    """Return the name of a limit as it is written.
+
+    >>> limit_in_words("u_min2")
+    'U_min2'
+    """
+    if name.startswith("touch_"):
+        return f"time above {name}"
+    return f"U_{name[2:]}" if name.startswith("u_") else name
+
+
+class Facts:
+    """A run and its scenario, as the sheets ask for them."""
+
+    def __init__(self, results: Results, scenario: Scenario) -> None:
+        self.results, self.scenario = results, scenario
+        self.run = results.run
+        self._tables: dict[str, pd.DataFrame] = {}
+
+    @property
+    def study(self) -> str:
+        """Name of the study."""
+        return self.scenario.name or str(self.run.get("name") or self.run.get("study") or "study")
+
+    @property
+    def feasibility(self) -> dict[str, Any] | None:
+        """The verdict on the timetable, if it was judged."""
+        told: dict[str, Any] | None = self.run.get("feasibility")
+        return told
+
+    @property
+    def verdicts(self) -> list[dict[str, Any]]:
+        """Verdicts of the run, each with all its keys."""
+        keys = ("name", "value", "unit", "place", "time", "limit", "limit_value", "source", "status", "met")
+        found = [{key: verdict.get(key) for key in keys} for verdict in self.run.get("verdicts", [])]
+        return [verdict | {"met": None if verdict["met"] is None else bool(verdict["met"])} for verdict in found]
+
+    @property
+    def ledgers(self) -> dict[str, dict[str, Any]]:
+        """Ledgers of the run; those of trains only where there are trains."""
+        told: dict[str, dict[str, Any]] = self.run.get("ledgers", {})
+        return {name: ledger for name, ledger in told.items() if name == "electric" or ledger.get("train", "")}
+
+    def table(self, name: str) -> pd.DataFrame:
+        """Return a table; an empty one where the run has none. A table of another kind than asked for last goes."""
+        if name not in self._tables:
+            frame = self.results.table(name) if name in self.results.tables else pd.DataFrame()
+            self._tables = {name: frame}  # a day of trains takes half a gigabyte
+        return self._tables[name]
+
+    @cached_property
+    def places(self) -> dict[str, dict[str, dict[str, Any]]]:
+        """Key figures by place, then by name."""
+        found: dict[str, dict[str, dict[str, Any]]] = {}
+        for figure in self.results.key_figures:
+            found.setdefault(figure.get("place") or "", {})[figure["name"]] = figure
+        return found
+
+    def value(self, place: str, name: str) -> float | None:
+        """Return the value of a key figure, None where there is none."""
+        figure = self.places.get(place, {}).get(name)
+        return None if figure is None else figure["value"]
+
+    def when(self, place: str, name: str) -> str:
+        """Return the time of a key figure as it is written."""
+        return str(self.places.get(place, {}).get(name, {}).get("time") or "")
+
+    def limit(self, name: str) -> Limit | None:
+        """Return a limit of the study's system."""
+        return find_limit(self.scenario.limits, self.scenario.supply.system, name)
+
+    @cached_property
+    def lines(self) -> LinePlaces:
+        """The lines with kilometres of their own."""
+        return LinePlaces(self.scenario)
+
+    @cached_property
+    def runs(self) -> dict[str, TrainRun]:
+        """The runs of the timetable by identifier."""
+        return {run.id: run for run in self.scenario.runs}
+
+    @cached_property
+    def station_names(self) -> dict[str, str]:
+        """Names of the stations by identifier."""
+        return {station.id: station.name for station in self.scenario.line.stations}
+
+    @cached_property
+    def trains(self) -> list[dict[str, Any]]:
+        """What became of each train, by identifier; where ``run.json`` does not tell, trains that have figures."""
+        told = self.run.get("trains") or [
+            {"train": place.removeprefix("train ")} for place in self.places if place.startswith("train ")
+        ]
+        return sorted(told, key=lambda train: str(train["train"]))

@@ -1,0 +1,277 @@
+"""A sheet as it is filled: title, notes, tables one below the other, print set-up."""
+
+from __future__ import annotations
+
+import math
+import re
+import textwrap
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from openpyxl.utils import get_column_letter
+from openpyxl.worksheet.pagebreak import Break
+from openpyxl.worksheet.table import Table, TableStyleInfo
+
+from tractionpower.model.quantity import Quantity
+from tractionpower.reporting.workbook.frame.cells import Styles, clean, days, put, shorten
+from tractionpower.reporting.workbook.frame.facts import Facts
+
+NOTE_WIDTH = 118
+"""Characters in a line of a note."""
+
+LONGEST_WORD = 24
+"""Characters of a word in a heading that its column makes room for."""
+
+HEADING_LENGTH = 80
+"""Characters of a heading; Excel's limit is 255."""
+
+PADDING = 2.5
+"""Width of a column beyond that of its texts [characters]."""
+
+WIDE = 165.0
+"""A sheet that is wider than this is printed on A3: on A4 its letters would be too small [characters]."""
+
+LINE_POINTS = 15.0
+"""Height of a line of text [pt]."""
+
+CHART_ROWS = 30
+"""Rows that a chart covers."""
+
+_BARE = {"km": "place [km]", "kmh": "speed [km/h]", "permille": "slope [‰]"}
+_FIXED = {"0": 0, "0.0": 1, "0.00": 2, "0.000": 3, "0.0000": 4, "0.00000": 5}
+
+
+def heading_of(name: str) -> str:
+    """Return the heading of a quantity by its name, with the unit.
+
+    >>> heading_of("no_load_voltage_v"), heading_of("km")
+    ('no load voltage [V]', 'place [km]')
+    """
+    return _BARE.get(name) or Quantity(name, "").heading
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column of a table: its heading, the style of its cells, and the width that it may take [characters].
+
+    The style is ``text``, a number format such as ``0.0``, ``time`` for seconds that are shown as a time of day, or ``any``
+    where texts and numbers are mixed, ``beside`` for texts on the right of numbers.
+    """
+
+    heading: str
+    style: str = "text"
+    widest: int = 34
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Where a table stands: its sheet, first and last row of the data, and the columns by heading."""
+
+    sheet: Any
+    first: int
+    last: int
+    headings: tuple[str, ...]
+
+    def column(self, heading: str) -> int:
+        """Return the number of a column, from 1."""
+        return self.headings.index(heading) + 1
+
+    def cells(self, heading: str) -> str:
+        """Return the range of a column's data, as conditional formats need it."""
+        letter = get_column_letter(self.column(heading))
+        return f"{letter}{self.first}:{letter}{self.last}"
+
+
+class Page:
+    """One sheet of the workbook.
+
+    Parameters
+    ----------
+    workbook, styles
+        Where it belongs.
+    name
+        Name of the sheet.
+    title
+        What stands above.
+    study
+        Name of the study, for the header of the printed page.
+    """
+
+    def __init__(self, workbook: Any, styles: Styles, name: str, title: str, study: str) -> None:
+        self.sheet = workbook.create_sheet(name)
+        self.styles, self.title = styles, title
+        self.next = 1
+        self._needed: dict[int, float] = {}
+        self._tables = 0
+        self._set_up(study)
+        self.line(title, "title")
+        self.sheet.row_dimensions[1].height = 24.0
+
+    def line(self, text: str, style: str = "plain") -> None:
+        """Write a line of text."""
+        put(self.sheet, self.next, 1, text, self.styles[style])
+        self.next += 1
+
+    def note(self, text: str) -> None:
+        """Write a note, broken into lines that fit on a printed page."""
+        for line in textwrap.wrap(clean(text), NOTE_WIDTH):
+            self.line(line, "note")
+
+    def wrapped(self, text: str) -> None:
+        """Write a text, broken into lines that fit on a printed page."""
+        for line in textwrap.wrap(clean(text), NOTE_WIDTH):
+            self.line(line)
+
+    def section(self, text: str) -> None:
+        """Write a heading above a table, with a free row before it."""
+        self.next += self._tables > 0
+        self.line(text, "section")
+
+    def table(self, columns: Sequence[Column], rows: Iterable[Sequence[Any]], *, frozen: bool = False) -> Block:
+        """Write a table with a filter in its header.
+
+        Parameters
+        ----------
+        columns
+            What it has.
+        rows
+            The values; a time is given in seconds.
+        frozen
+            Whether the header stays in sight and is printed on every page; for the only long table of a sheet.
+        """
+        top = self.next
+        longest = [_header_width(column.heading) for column in columns]
+        for number, heading in enumerate(_told_apart(columns), 1):
+            put(self.sheet, top, number, heading, self.styles["head"])
+        styles = [self.styles[column.style] for column in columns]
+        for row in rows:
+            self.next += 1
+            lines = 1
+            for k, (column, value) in enumerate(zip(columns, row, strict=True)):
+                shown = days(value) if column.style == "time" else value
+                width = _shown_width(put(self.sheet, self.next, k + 1, shown, styles[k]).value, column.style)
+                longest[k] = max(longest[k], min(width, column.widest))
+                lines = max(lines, math.ceil(width / (column.widest + PADDING)))
+            if lines > 1:
+                self.sheet.row_dimensions[self.next].height = LINE_POINTS * min(lines, 25)
+        for number, width in enumerate(longest, 1):
+            self._needed[number] = max(self._needed.get(number, 0.0), width)
+        block = Block(self.sheet, top + 1, self.next, tuple(column.heading for column in columns))
+        self._add_filter(block)
+        if frozen:
+            self.sheet.freeze_panes = f"B{top + 1}"
+            self.sheet.print_title_rows = f"{top}:{top}"
+        self._header_height(top, columns)
+        self.next += 2 if block.last >= block.first else 1
+        return block
+
+    def chart(self, chart: Any, row: int | None = None) -> None:
+        """Put a chart below what stands there, or into rows that were kept free for it."""
+        self.sheet.add_chart(chart, f"A{self.room_for_chart() if row is None else row}")
+
+    def room_for_chart(self) -> int:
+        """Keep rows free for a chart of what comes later, and return the first of them."""
+        self.next += CHART_ROWS
+        return self.next - CHART_ROWS
+
+    def new_page(self) -> None:
+        """Let what follows begin on a page of its own when it is printed."""
+        self.sheet.row_breaks.append(Break(id=self.next - 1))
+
+    def finish(self) -> None:
+        """Set the widths of the columns and the paper, when all is written."""
+        sheet = self.sheet
+        width = sum(needed + PADDING for needed in self._needed.values())
+        sheet.page_setup.paperSize = sheet.PAPERSIZE_A3 if width > WIDE else sheet.PAPERSIZE_A4
+        for number, width in self._needed.items():
+            self.sheet.column_dimensions[get_column_letter(number)].width = width + PADDING
+        if self.sheet.freeze_panes is None:
+            self.sheet.freeze_panes = "A2"
+
+    def widen(self, *widths: float) -> None:
+        """Give the first columns at least these widths [characters]."""
+        for number, width in enumerate(widths, 1):
+            self._needed[number] = max(self._needed.get(number, 0.0), width)
+
+    def _add_filter(self, block: Block) -> None:
+        self._tables += 1
+        if block.last < block.first:
+            return  # a table without rows is an error in Excel
+        words = re.sub(r"\W", "_", self.sheet.title)
+        area = f"A{block.first - 1}:{get_column_letter(len(block.headings))}{block.last}"
+        table = Table(displayName=f"{words}_{self._tables}", ref=area)
+        table.tableStyleInfo = TableStyleInfo(name="TableStyleLight1", showRowStripes=False)
+        self.sheet.add_table(table)
+
+    def _header_height(self, row: int, columns: Sequence[Column]) -> None:
+        width = {number: self._needed[number] for number in range(1, len(columns) + 1)}
+        lines = max(len(textwrap.wrap(column.heading, int(width[number]))) for number, column in enumerate(columns, 1))
+        self.sheet.row_dimensions[row].height = LINE_POINTS * max(lines, 1) + 9.0
+
+    def _set_up(self, study: str) -> None:
+        sheet = self.sheet
+        sheet.sheet_view.showGridLines = False
+        sheet.page_setup.orientation = "landscape"
+        sheet.sheet_properties.pageSetUpPr.fitToPage = True
+        sheet.page_setup.fitToWidth, sheet.page_setup.fitToHeight = 1, 0
+        sheet.page_margins.left = sheet.page_margins.right = 0.5
+        sheet.page_margins.top = sheet.page_margins.bottom = 0.75
+        sheet.oddHeader.left.text = shorten(study, 80).replace("&", "&&")
+        sheet.oddHeader.right.text = "&A"
+        sheet.oddFooter.left.text = "tractionpower"
+        sheet.oddFooter.right.text = "page &P of &N"
+
+
+class Book:
+    """The workbook in the making.
+
+    Parameters
+    ----------
+    workbook
+        An openpyxl workbook; its sheets are made here.
+    facts
+        What the sheets tell.
+    """
+
+    def __init__(self, workbook: Any, facts: Facts) -> None:
+        self.workbook, self.facts = workbook, facts
+        self.styles = Styles(workbook)
+        self.pages: list[Page] = []
+
+    def page(self, name: str, title: str) -> Page:
+        """Add a sheet."""
+        page = Page(self.workbook, self.styles, name, title, self.facts.study)
+        self.pages.append(page)
+        return page
+
+
+def _told_apart(columns: Sequence[Column]) -> list[str]:
+    """Return headings as Excel wants them in a filtered table: short, and no two that differ by case alone."""
+    shown: list[str] = []
+    taken: set[str] = set()
+    for column in columns:
+        short = heading = shorten(column.heading, HEADING_LENGTH)
+        count = 1
+        while heading.casefold() in taken:
+            count += 1
+            heading = f"{short} ({count})"
+        taken.add(heading.casefold())
+        shown.append(heading)
+    return shown
+
+
+def _header_width(heading: str) -> float:
+    """Return the width that a heading needs when it is broken at its blanks, with room for the button of the filter."""
+    word = min(max(map(len, heading.split()), default=0), LONGEST_WORD)
+    return max(7.0, word + 3.0, len(heading) / 3.0)
+
+
+def _shown_width(value: Any, style: str) -> float:
+    if value is None:
+        return 0.0
+    if isinstance(value, str):
+        return max(map(len, value.split("\n")), default=0) * 1.05
+    if style in _FIXED:
+        return len(f"{value:.{_FIXED[style]}f}")
+    return 8.0 if style == "time" else len(f"{value:.10g}")

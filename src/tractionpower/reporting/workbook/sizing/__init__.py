@@ -1,0 +1,1 @@
+"""Sheets on ratings and mean useful voltage."""

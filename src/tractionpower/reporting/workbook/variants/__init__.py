@@ -1,0 +1,1 @@
+"""The workbooks of a sweep and of a comparison."""

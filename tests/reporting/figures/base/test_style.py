@@ -1,0 +1,40 @@
+"""Figures in files."""
+
+import matplotlib as mpl
+import pytest
+
+from tractionpower.reporting.figures.base.style import COLOURS, STYLE, new_figure, png_names, save
+
+
+def test_a_figure_gets_its_name_when_it_is_complete(tmp_path):
+    with mpl.rc_context(STYLE):
+        figure = new_figure(2.0, 1.0)
+        figure.add_subplot().set_title("costs $5 and $6")  # no formula
+    path = save(figure, tmp_path / "new" / "a.b.png")
+    assert path.read_bytes().startswith(b"\x89PNG")
+    assert [each.name for each in path.parent.iterdir()] == ["a.b.png"]
+
+
+def test_what_cannot_be_drawn_leaves_no_file(tmp_path, monkeypatch):
+    figure = new_figure(2.0, 1.0)
+
+    def fail(path, **options):
+        path.write_bytes(b"half")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(figure, "savefig", fail)
+    with pytest.raises(OSError, match="disk full"):
+        save(figure, tmp_path / "a.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_names_of_files_differ_where_capitals_do_not_count():
+    names = png_names(["IC 5/1", "ic 5/1", "7"])
+    assert names["7"] == "7.png"
+    assert len({name.lower() for name in names.values()}) == 3
+    assert all("/" not in name and name.endswith(".png") for name in names.values())
+
+
+def test_colours_differ_in_brightness_or_hue_for_every_eye():
+    """The colours are those of Okabe and Ito, Color Universal Design (2008)."""
+    assert set(COLOURS) == {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"}
