@@ -95,15 +95,17 @@ class Quantity:
         return unit_of(self.name)
 
     @property
+    def words(self) -> str:
+        """The name for people, without its unit."""
+        for suffix in sorted(UNITS, key=len, reverse=True):
+            if self.name.endswith("_" + suffix):
+                return self.name[: -len(suffix) - 1].replace("_", " ")
+        return self.name.replace("_", " ")
+
+    @property
     def heading(self) -> str:
         """Heading of a column for people, for example ``voltage [V]``."""
-        words = self.name
-        for suffix in sorted(UNITS, key=len, reverse=True):
-            if words.endswith("_" + suffix):
-                words = words[: -len(suffix) - 1]
-                break
-        text = words.replace("_", " ")
-        return f"{text} [{self.unit}]" if self.unit else text
+        return f"{self.words} [{self.unit}]" if self.unit else self.words
 
     def field(self) -> Any:
         """Return this quantity as the default value of a pydantic field."""

@@ -8,7 +8,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from tractionpower.errors import OutputError
+from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.texts import language
 from tractionpower.results.disk import reason_of
 from tractionpower.results.results import Results
 
@@ -20,10 +22,11 @@ WORKBOOKS = {"compare": "compare.xlsx"}
 FigureWriter = Callable[[Results, Scenario, Path], list[Path]]
 
 
-def write_reports(results: Results, scenario: Scenario, folder: Path) -> list[Path]:
+def write_reports(results: Results, scenario: Scenario, folder: Path, report: Report | None = None) -> list[Path]:
     """Write figures and workbook of a run, or of a study of many, into `folder` and return their paths.
 
-    One report that cannot be written does not hinder the others; tables are not touched.
+    One report that cannot be written does not hinder the others; tables are not touched. `report` is the template: language,
+    choice of sheets and figures; None: English, all of them.
 
     Raises
     ------
@@ -32,18 +35,20 @@ def write_reports(results: Results, scenario: Scenario, folder: Path) -> list[Pa
     """
     from tractionpower.reporting.workbook import write_workbook
 
+    report = report or Report()
     kind = str(results.run.get("kind") or "")
     workbook = folder / WORKBOOKS.get(kind, WORKBOOK)
     paths: list[Path] = []
     hindrances = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        paths += _figure_writer(kind)(results, scenario, folder / FIGURES)
+        with language(report.language):
+            paths += _figure_writer(kind)(results, scenario, folder / FIGURES)
         _remove_other_figures(folder / FIGURES, {*paths})
     except OSError as error:
         hindrances.append(f"figures cannot be written into {folder / FIGURES}: {reason_of(error)}")
     try:
-        paths.append(write_workbook(results, scenario, workbook))
+        paths.append(write_workbook(results, scenario, workbook, report))
     except OSError as error:
         hindrances.append(f"{workbook} cannot be written: {reason_of(error)}")
     if hindrances:

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.texts import language
 from tractionpower.results.results import Results
 
 
-def write_workbook(results: Results, scenario: Scenario, path: Path) -> Path:
+def write_workbook(results: Results, scenario: Scenario, path: Path, report: Report | None = None) -> Path:
     """Write the workbook of a run, or of a study of many, and return where it is.
 
     The file gets its name when it is complete. Where another program holds the earlier one open, the new one stands
@@ -23,11 +25,16 @@ def write_workbook(results: Results, scenario: Scenario, path: Path) -> Path:
         What was run.
     path
         Name of the file, ``report.xlsx``.
+    report
+        The template; None: English, all sheets.
     """
+    from tractionpower.reporting.workbook.frame.saving import save_as
     from tractionpower.reporting.workbook.outages import outage_book
     from tractionpower.reporting.workbook.run import book
     from tractionpower.reporting.workbook.variants import compare, sweep
 
+    report = report or Report()
     builders = {"contingency": outage_book.build, "sweep": sweep.build, "compare": compare.build}
     build = builders.get(str(results.run.get("kind") or ""), book.build)
-    return book.save_as(build(results, scenario), path)
+    with language(report.language):
+        return save_as(build(results, scenario, report), path)

@@ -8,12 +8,15 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from openpyxl import Workbook
 
-from tractionpower.reporting.workbook.frame.cells import Styles, shorten
+from tractionpower.model.report import Report
+from tractionpower.reporting.texts import language
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.cells import shorten
+from tractionpower.reporting.workbook.frame.facts import Subject
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page, heading_of
 from tractionpower.reporting.workbook.frame.plots import COLOURS, Line, draw, scatter, show_clock
-from tractionpower.reporting.workbook.run.book import save_as
+from tractionpower.reporting.workbook.frame.saving import save_as
 from tractionpower.results.columns import TABLES
 from tractionpower.results.results import Results
 
@@ -35,24 +38,18 @@ _DATA = ("column", "rows", "share_percent", "shift_s", "smoothing_s", "gaps", "l
 TIME, KM, MEASURED, COMPUTED, ERROR = "time of day", "place [km]", "measured", "computed", "error"
 
 
-def write_measured_workbook(results: Results, path: Path) -> Path:
+def write_measured_workbook(results: Results, path: Path, report: Report | None = None) -> Path:
     """Write the workbook and return where it is."""
-    workbook = Workbook()
-    blank = workbook.active  # styles are made on it
-    styles, study = Styles(workbook), str(results.run.get("name") or results.run.get("study", ""))
-    rows, errors = results.table("measured"), results.table("measured_errors")
-    pages = [Page(workbook, styles, name, title, study) for name, title in (
-        ("Errors", shorten(f"{study}: run and measurement", 120)),
-        ("Charts", "Charts: measured and computed"),
-        ("Values", "Values: measured, computed, error"),
-    )]  # fmt: skip
-    _errors(pages[0], results, errors)
-    _values(pages[2], pages[1], rows, errors)
-    for page in pages:
-        page.finish()
-    workbook.remove(blank)
-    workbook.properties.title, workbook.properties.creator = shorten(study, 200), "tractionpower"
-    return save_as(workbook, path)
+    report = report or Report()
+    with language(report.language):
+        book = Book(Subject(results), report)
+        errors = book.page("Errors", shorten(f"{book.subject.study}: run and measurement", 120))
+        charts = book.page("Charts", "Charts: measured and computed")
+        values = book.page("Values", "Values: measured, computed, error")
+        _errors(errors, results, results.table("measured_errors"))
+        _values(values, charts, results.table("measured"), results.table("measured_errors"))
+        book.finish()
+        return save_as(book, path)
 
 
 def _errors(page: Page, results: Results, errors: pd.DataFrame) -> None:

@@ -1,14 +1,15 @@
 import pytest
 from fake_results import make_case
-from openpyxl import Workbook
 
+from tractionpower.model.report import Report
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
-from tractionpower.reporting.workbook.frame.page import Book, Column, heading_of
+from tractionpower.reporting.workbook.frame.page import Column, heading_of
 
 
 @pytest.fixture
 def book():
-    return Book(Workbook(), Facts(*make_case()))
+    return Book(Facts(*make_case()), Report())
 
 
 def test_headings_that_differ_by_case_alone_are_told_apart(book):

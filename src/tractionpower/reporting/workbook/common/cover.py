@@ -12,9 +12,10 @@ from openpyxl.worksheet.hyperlink import Hyperlink
 from tractionpower.model.base import format_time
 from tractionpower.reporting.workbook.common.limits import verdict_word
 from tractionpower.reporting.workbook.feasibility.feasibility import verdict_in_words
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import put
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, STATES, Facts, limit_in_words
-from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Book, Page
+from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Page
 from tractionpower.reporting.workbook.sizing.ratings import one_for_each, ratings_in_words
 
 LABEL_WIDTH, TEXT_WIDTH = 28.0, 100.0

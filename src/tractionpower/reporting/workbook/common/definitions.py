@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from tractionpower.reporting.workbook.frame.page import Book, Column, Page, heading_of
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.page import Column, Page, heading_of
 from tractionpower.results.columns import TABLES
 
 NOT_COVERED = (

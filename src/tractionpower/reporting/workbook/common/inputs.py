@@ -15,8 +15,9 @@ from tractionpower.model.supply import Supply
 from tractionpower.model.vehicle import Train, Vehicle
 from tractionpower.movement.compile import train_of
 from tractionpower.movement.formation import form
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS
-from tractionpower.reporting.workbook.frame.page import Book, Column, Page, heading_of
+from tractionpower.reporting.workbook.frame.page import Column, Page, heading_of
 from tractionpower.reporting.workbook.run import conductors
 from tractionpower.reporting.workbook.run.trains import formation_in_words, route_in_words
 

@@ -6,9 +6,10 @@ from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule
 
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, limit_in_words
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column
+from tractionpower.reporting.workbook.frame.page import Block, Column
 
 MET, VIOLATED, OPEN = "met", "violated", "not judged"
 

@@ -8,8 +8,9 @@ from typing import Any
 from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
 from tractionpower.reporting.figures.delays.delay_styles import cause_in_words
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column
+from tractionpower.reporting.workbook.frame.page import Block, Column
 from tractionpower.results.columns import DELAY_PARTS
 
 DELAY = "delay [s]"

@@ -7,8 +7,9 @@ from typing import Any
 from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
 from tractionpower.reporting.figures.delays.delay_styles import cause_in_words
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill, put
-from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Book, Column, Page
+from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Column, Page
 
 VERDICT, LEFT, LATE = "verdict", "reserve left [s]", "late at worst [s]"
 

@@ -8,7 +8,8 @@ from typing import Any
 import pandas as pd
 
 from tractionpower.reporting.facts.places import told
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column, Page
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 from tractionpower.reporting.workbook.frame.plots import COLOURS, Line, bars, draw, scatter
 
 LEAST_S = 0.05

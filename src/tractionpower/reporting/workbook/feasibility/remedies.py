@@ -6,8 +6,9 @@ from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule
 
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import GREEN_FILL, RED_FILL, fill
-from tractionpower.reporting.workbook.frame.page import Book, Column, Page
+from tractionpower.reporting.workbook.frame.page import Column, Page
 
 _COLUMNS = (
     Column("kind", widest=24),

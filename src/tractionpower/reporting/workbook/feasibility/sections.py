@@ -7,8 +7,9 @@ from typing import Any
 from openpyxl.formatting.rule import DataBarRule
 
 from tractionpower.reporting.workbook.feasibility.feasibility import colour_reserve
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL
-from tractionpower.reporting.workbook.frame.page import Book, Column
+from tractionpower.reporting.workbook.frame.page import Column
 
 LEFT, LOST = "reserve left [s]", "lost to low voltage [s]"
 

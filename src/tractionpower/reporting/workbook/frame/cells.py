@@ -79,13 +79,6 @@ def put(sheet: Any, row: int, column: int, value: Any, style: Any) -> Any:
     return cell
 
 
-def put_formula(sheet: Any, row: int, column: int, formula: str, style: Any) -> None:
-    """Write a formula of the program's own."""
-    cell = sheet.cell(row, column)
-    cell._style = style
-    cell.value = formula
-
-
 def plain(value: Any) -> float | int | str | None:
     """Return a value as what a cell can hold; None where there is none.
 

@@ -43,18 +43,40 @@ def limit_in_words(name: str) -> str:
     return f"U_{name[2:]}" if name.startswith("u_") else name
 
 
-class Facts:
+class Subject:
+    """What a workbook is about: results, the name of their study."""
+
+    def __init__(self, results: Results) -> None:
+        self.results, self.run = results, results.run
+
+    @property
+    def study(self) -> str:
+        """Name of the study."""
+        return str(self.run.get("name") or self.run.get("study") or "study")
+
+    @property
+    def input_hash(self) -> str:
+        """Hash of the inputs."""
+        return str(self.run.get("input_hash", ""))
+
+
+class Facts(Subject):
     """A run and its scenario, as the sheets ask for them."""
 
     def __init__(self, results: Results, scenario: Scenario) -> None:
-        self.results, self.scenario = results, scenario
-        self.run = results.run
+        super().__init__(results)
+        self.scenario = scenario
         self._tables: dict[str, pd.DataFrame] = {}
 
     @property
     def study(self) -> str:
         """Name of the study."""
-        return self.scenario.name or str(self.run.get("name") or self.run.get("study") or "study")
+        return self.scenario.name or super().study
+
+    @property
+    def input_hash(self) -> str:
+        """Hash of the inputs."""
+        return super().input_hash or self.scenario.input_hash
 
     @property
     def feasibility(self) -> dict[str, Any] | None:

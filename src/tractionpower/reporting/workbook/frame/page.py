@@ -5,23 +5,30 @@ from __future__ import annotations
 import math
 import re
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.pagebreak import Break
 from openpyxl.worksheet.table import Table, TableStyleInfo
 
 from tractionpower.model.quantity import Quantity
-from tractionpower.reporting.workbook.frame.cells import Styles, clean, days, put, shorten
-from tractionpower.reporting.workbook.frame.facts import Facts
+from tractionpower.reporting.texts import mark, recorded, tr
+from tractionpower.reporting.workbook.frame.cells import clean, days, put, shorten
+from tractionpower.reporting.workbook.frame.formulas import Formula
+
+if TYPE_CHECKING:
+    from tractionpower.reporting.workbook.frame.book import Book
 
 NOTE_WIDTH = 118
 """Characters in a line of a note."""
 
 LONGEST_WORD = 24
 """Characters of a word in a heading that its column makes room for."""
+
+SHEET_NAME_LENGTH = 31
+"""Characters of the name of a sheet, the limit of Excel."""
 
 HEADING_LENGTH = 80
 """Characters of a heading; Excel's limit is 255."""
@@ -38,7 +45,7 @@ LINE_POINTS = 15.0
 CHART_ROWS = 30
 """Rows that a chart covers."""
 
-_BARE = {"km": "place [km]", "kmh": "speed [km/h]", "permille": "slope [‰]"}
+_BARE = {"km": mark("place [km]"), "kmh": mark("speed [km/h]"), "permille": mark("slope [‰]")}
 _FIXED = {"0": 0, "0.0": 1, "0.00": 2, "0.000": 3, "0.0000": 4, "0.00000": 5}
 
 
@@ -48,7 +55,8 @@ def heading_of(name: str) -> str:
     >>> heading_of("no_load_voltage_v"), heading_of("km")
     ('no load voltage [V]', 'place [km]')
     """
-    return _BARE.get(name) or Quantity(name, "").heading
+    quantity = Quantity(name, "")
+    return tr(_BARE[name]) if name in _BARE else f"{recorded(quantity.words)}{f' [{quantity.unit}]' if quantity.unit else ''}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,71 +64,86 @@ class Column:
     """A column of a table: its heading, the style of its cells, and the width that it may take [characters].
 
     The style is ``text``, a number format such as ``0.0``, ``time`` for seconds that are shown as a time of day, or ``any``
-    where texts and numbers are mixed, ``beside`` for texts on the right of numbers.
+    where texts and numbers are mixed, ``beside`` for texts on the right of numbers. The heading is English; it is shown in the
+    language of the report. By its key, formulas of the same row find it.
     """
 
     heading: str
     style: str = "text"
     widest: int = 34
+    key: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Where a table stands: its sheet, first and last row of the data, and the columns by heading."""
+    """Where a table stands: its sheet, first and last row of the data, and the columns by heading (in English) or key."""
 
     sheet: Any
     first: int
     last: int
     headings: tuple[str, ...]
+    keys: tuple[str, ...] = ()
 
-    def column(self, heading: str) -> int:
+    def column(self, name: str) -> int:
         """Return the number of a column, from 1."""
-        return self.headings.index(heading) + 1
+        return (self.keys if name in self.keys else self.headings).index(name) + 1
 
-    def cells(self, heading: str) -> str:
+    def cell(self, name: str, row: int) -> str:
+        """Return a cell of a column by the number of its row in the sheet."""
+        return f"{get_column_letter(self.column(name))}{row}"
+
+    def cells(self, name: str) -> str:
         """Return the range of a column's data, as conditional formats need it."""
-        letter = get_column_letter(self.column(heading))
-        return f"{letter}{self.first}:{letter}{self.last}"
+        return f"{self.cell(name, self.first)}:{self.cell(name, self.last)}"
 
 
 class Page:
     """One sheet of the workbook.
 
+    Texts that are the same in every report are given in English and shown in the language of the report; those with names or
+    numbers are made by ``texts.tr``.
+
     Parameters
     ----------
-    workbook, styles
+    book
         Where it belongs.
     name
-        Name of the sheet.
+        Name of the sheet, in English.
     title
         What stands above.
-    study
-        Name of the study, for the header of the printed page.
     """
 
-    def __init__(self, workbook: Any, styles: Styles, name: str, title: str, study: str) -> None:
-        self.sheet = workbook.create_sheet(name)
-        self.styles, self.title = styles, title
+    def __init__(self, book: Book, name: str, title: str) -> None:
+        self.book, self.name, self.title = book, name, tr(title)
+        self.sheet = book.workbook.create_sheet(shorten(tr(name), SHEET_NAME_LENGTH))
+        self.styles = book.styles
         self.next = 1
         self._needed: dict[int, float] = {}
         self._tables = 0
-        self._set_up(study)
-        self.line(title, "title")
+        self._set_up()
+        self.line(self.title, "title")
         self.sheet.row_dimensions[1].height = 24.0
+
+    def put(self, row: int, column: int, value: Any, style: str, cells: Mapping[str, str] | None = None) -> Any:
+        """Write a value or a formula into a cell and return what is shown there; `cells` are those that a formula may name."""
+        if isinstance(value, Formula):
+            self.book.pending.append((self, row, column, value, cells or {}))
+            value = value.value
+        return put(self.sheet, row, column, value, self.styles[style]).value
 
     def line(self, text: str, style: str = "plain") -> None:
         """Write a line of text."""
-        put(self.sheet, self.next, 1, text, self.styles[style])
+        put(self.sheet, self.next, 1, tr(text), self.styles[style])
         self.next += 1
 
     def note(self, text: str) -> None:
         """Write a note, broken into lines that fit on a printed page."""
-        for line in textwrap.wrap(clean(text), NOTE_WIDTH):
+        for line in textwrap.wrap(clean(tr(text)), NOTE_WIDTH):
             self.line(line, "note")
 
     def wrapped(self, text: str) -> None:
         """Write a text, broken into lines that fit on a printed page."""
-        for line in textwrap.wrap(clean(text), NOTE_WIDTH):
+        for line in textwrap.wrap(clean(tr(text)), NOTE_WIDTH):
             self.line(line)
 
     def section(self, text: str) -> None:
@@ -136,33 +159,39 @@ class Page:
         columns
             What it has.
         rows
-            The values; a time is given in seconds.
+            The values, among them formulas; a time is given in seconds.
         frozen
             Whether the header stays in sight and is printed on every page; for the only long table of a sheet.
         """
         top = self.next
-        longest = [_header_width(column.heading) for column in columns]
-        for number, heading in enumerate(_told_apart(columns), 1):
+        shown = [tr(column.heading) for column in columns]
+        longest = [_header_width(heading) for heading in shown]
+        for number, heading in enumerate(_told_apart(shown), 1):
             put(self.sheet, top, number, heading, self.styles["head"])
+        keys = [(column.key, get_column_letter(number)) for number, column in enumerate(columns, 1) if column.key]
         styles = [self.styles[column.style] for column in columns]
         for row in rows:
             self.next += 1
             lines = 1
             for k, (column, value) in enumerate(zip(columns, row, strict=True)):
-                shown = days(value) if column.style == "time" else value
-                width = _shown_width(put(self.sheet, self.next, k + 1, shown, styles[k]).value, column.style)
+                if isinstance(value, Formula):
+                    self.book.pending.append((self, self.next, k + 1, value, {key: f"{at}{self.next}" for key, at in keys}))
+                    value = value.value  # noqa: PLW2901 - what is shown until the formula is written
+                told = days(value) if column.style == "time" else value
+                width = _shown_width(put(self.sheet, self.next, k + 1, told, styles[k]).value, column.style)
                 longest[k] = max(longest[k], min(width, column.widest))
                 lines = max(lines, math.ceil(width / (column.widest + PADDING)))
             if lines > 1:
                 self.sheet.row_dimensions[self.next].height = LINE_POINTS * min(lines, 25)
         for number, width in enumerate(longest, 1):
             self._needed[number] = max(self._needed.get(number, 0.0), width)
-        block = Block(self.sheet, top + 1, self.next, tuple(column.heading for column in columns))
+        headings, by_key = tuple(column.heading for column in columns), tuple(column.key for column in columns)
+        block = Block(self.sheet, top + 1, self.next, headings, by_key)
         self._add_filter(block)
         if frozen:
             self.sheet.freeze_panes = f"B{top + 1}"
             self.sheet.print_title_rows = f"{top}:{top}"
-        self._header_height(top, columns)
+        self._header_height(top, shown)
         self.next += 2 if block.last >= block.first else 1
         return block
 
@@ -183,7 +212,9 @@ class Page:
         """Set the widths of the columns and the paper, when all is written."""
         sheet = self.sheet
         width = sum(needed + PADDING for needed in self._needed.values())
-        sheet.page_setup.paperSize = sheet.PAPERSIZE_A3 if width > WIDE else sheet.PAPERSIZE_A4
+        paper = self.book.report.paper
+        wide = width > WIDE if paper == "fit" else paper == "a3"
+        sheet.page_setup.paperSize = sheet.PAPERSIZE_A3 if wide else sheet.PAPERSIZE_A4
         for number, width in self._needed.items():
             self.sheet.column_dimensions[get_column_letter(number)].width = width + PADDING
         if self.sheet.freeze_panes is None:
@@ -204,12 +235,11 @@ class Page:
         table.tableStyleInfo = TableStyleInfo(name="TableStyleLight1", showRowStripes=False)
         self.sheet.add_table(table)
 
-    def _header_height(self, row: int, columns: Sequence[Column]) -> None:
-        width = {number: self._needed[number] for number in range(1, len(columns) + 1)}
-        lines = max(len(textwrap.wrap(column.heading, int(width[number]))) for number, column in enumerate(columns, 1))
+    def _header_height(self, row: int, headings: Sequence[str]) -> None:
+        lines = max(len(textwrap.wrap(heading, int(self._needed[number]))) for number, heading in enumerate(headings, 1))
         self.sheet.row_dimensions[row].height = LINE_POINTS * max(lines, 1) + 9.0
 
-    def _set_up(self, study: str) -> None:
+    def _set_up(self) -> None:
         sheet = self.sheet
         sheet.sheet_view.showGridLines = False
         sheet.page_setup.orientation = "landscape"
@@ -217,41 +247,18 @@ class Page:
         sheet.page_setup.fitToWidth, sheet.page_setup.fitToHeight = 1, 0
         sheet.page_margins.left = sheet.page_margins.right = 0.5
         sheet.page_margins.top = sheet.page_margins.bottom = 0.75
-        sheet.oddHeader.left.text = shorten(study, 80).replace("&", "&&")
+        sheet.oddHeader.left.text = shorten(self.book.subject.study, 80).replace("&", "&&")
         sheet.oddHeader.right.text = "&A"
-        sheet.oddFooter.left.text = "tractionpower"
-        sheet.oddFooter.right.text = "page &P of &N"
+        sheet.oddFooter.left.text = shorten(self.book.report.company or "tractionpower", 80).replace("&", "&&")
+        sheet.oddFooter.right.text = tr("page &P of &N")
 
 
-class Book:
-    """The workbook in the making.
-
-    Parameters
-    ----------
-    workbook
-        An openpyxl workbook; its sheets are made here.
-    facts
-        What the sheets tell.
-    """
-
-    def __init__(self, workbook: Any, facts: Facts) -> None:
-        self.workbook, self.facts = workbook, facts
-        self.styles = Styles(workbook)
-        self.pages: list[Page] = []
-
-    def page(self, name: str, title: str) -> Page:
-        """Add a sheet."""
-        page = Page(self.workbook, self.styles, name, title, self.facts.study)
-        self.pages.append(page)
-        return page
-
-
-def _told_apart(columns: Sequence[Column]) -> list[str]:
+def _told_apart(headings: Sequence[str]) -> list[str]:
     """Return headings as Excel wants them in a filtered table: short, and no two that differ by case alone."""
     shown: list[str] = []
     taken: set[str] = set()
-    for column in columns:
-        short = heading = shorten(column.heading, HEADING_LENGTH)
+    for each in headings:
+        short = heading = shorten(each, HEADING_LENGTH)
         count = 1
         while heading.casefold() in taken:
             count += 1

@@ -2,34 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from openpyxl import Workbook
-
+from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.workbook.common import definitions, inputs, limits
+from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
-from tractionpower.reporting.workbook.frame.page import Book
 from tractionpower.reporting.workbook.outages import outage_cover, outage_delays, outage_envelopes, outage_table
-from tractionpower.reporting.workbook.run.book import TITLE_LENGTH, describe
 from tractionpower.results.results import Results
 
 
-def build(results: Results, scenario: Scenario) -> Any:
+def build(results: Results, scenario: Scenario, report: Report) -> Book:
     """Return the workbook; a sheet that would be empty is left out."""
-    workbook = Workbook()
-    blank = workbook.active  # styles are made on it
-    book, outages = Book(workbook, Facts(results, scenario)), Outages(results, scenario)
+    book, outages = Book(Facts(results, scenario), report), Outages(results, scenario)
     front = book.page("Cover", shorten(f"{book.facts.study}: outages", TITLE_LENGTH))
     for add in (outage_table.add, outage_envelopes.add, outage_delays.add):
         add(book, outages)
     for add_inputs in (limits.add, inputs.add, definitions.add):
         add_inputs(book)
     outage_cover.fill(book, front, outages)
-    for page in book.pages:
-        page.finish()
-    workbook.remove(blank)
-    describe(workbook, book.facts)
-    return workbook
+    book.finish()
+    return book

@@ -10,8 +10,9 @@ from tractionpower.io.wording import counted
 from tractionpower.model.base import format_time
 from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages, outcome_words
 from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in, verdict_sentence
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
-from tractionpower.reporting.workbook.frame.page import Book, Page
+from tractionpower.reporting.workbook.frame.page import Page
 
 MOST_NAMED = 4
 """Outages that are named for each thing that fails."""

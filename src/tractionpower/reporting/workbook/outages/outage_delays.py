@@ -9,8 +9,9 @@ import pandas as pd
 from openpyxl.formatting.rule import CellIsRule
 
 from tractionpower.reporting.facts.outages import Outages
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, RED_FILL, fill
-from tractionpower.reporting.workbook.frame.page import Book, Column
+from tractionpower.reporting.workbook.frame.page import Column
 
 ADDED = "added [s]"
 MOST_ROWS = 5000

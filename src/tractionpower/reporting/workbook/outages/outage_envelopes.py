@@ -11,7 +11,8 @@ import pandas as pd
 from tractionpower.reporting.facts.device_words import KINDS, kind_order
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.facts.places import told
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.page import Block, Column
 from tractionpower.reporting.workbook.frame.plots import COLOURS, GREY, Line, draw, scatter
 from tractionpower.reporting.workbook.sizing.ratings import HOLDS, UNRATED, banner, colour_use, colour_word
 from tractionpower.studies.ratings.words import window_words

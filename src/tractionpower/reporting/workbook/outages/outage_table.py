@@ -9,8 +9,9 @@ import pandas as pd
 from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
 from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages, worst
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL, fill
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column
+from tractionpower.reporting.workbook.frame.page import Block, Column
 from tractionpower.reporting.workbook.sizing.ratings import HOLDS, colour_use, colour_word
 
 Case = Mapping[str, Any]

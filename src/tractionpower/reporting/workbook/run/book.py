@@ -1,18 +1,14 @@
-"""The workbook as a whole: which sheets it has, in which order, and how it gets into its file."""
+"""The workbook of a run: which sheets it has, in which order."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
-
-from openpyxl import Workbook
-
+from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.workbook.common import cover, definitions, inputs, limits
 from tractionpower.reporting.workbook.feasibility import delays, feasibility, lost_time, remedies, sections
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
-from tractionpower.reporting.workbook.frame.page import Book
 from tractionpower.reporting.workbook.run import (
     calls,
     charts,
@@ -26,18 +22,12 @@ from tractionpower.reporting.workbook.run import (
     trains,
 )
 from tractionpower.reporting.workbook.sizing import device_loads, peaks, ratings, useful_voltage
-from tractionpower.results.disk import BESIDE
 from tractionpower.results.results import Results
 
-TITLE_LENGTH = 200
-"""Characters of the title in the properties of the document."""
 
-
-def build(results: Results, scenario: Scenario) -> Any:
+def build(results: Results, scenario: Scenario, report: Report) -> Book:
     """Return the workbook of a run; a sheet that would be empty is left out."""
-    workbook = Workbook()
-    blank = workbook.active  # styles are made on it
-    book = Book(workbook, Facts(results, scenario))
+    book = Book(Facts(results, scenario), report)
     front = book.page("Cover", shorten(book.facts.study, cover.TITLE_LENGTH))
     for add in (feasibility.add, remedies.add, delays.add, sections.add, lost_time.add):
         add(book)
@@ -51,32 +41,5 @@ def build(results: Results, scenario: Scenario) -> Any:
     for add in (events.add, inputs.add, definitions.add):
         add(book)
     cover.fill_in(book, front)
-    for page in book.pages:
-        page.finish()
-    workbook.remove(blank)
-    describe(workbook, book.facts)
-    return workbook
-
-
-def save_as(workbook: Any, path: Path) -> Path:
-    """Save a workbook under a name that it gets when it is complete; return the name."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_suffix(".tmp")
-    try:
-        workbook.save(temporary)
-        try:
-            temporary.replace(path)
-        except PermissionError:  # Windows: another program holds the file that would be replaced
-            path = path.with_name(f"{path.stem}{BESIDE}{path.suffix}")
-            temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-    return path
-
-
-def describe(workbook: Any, facts: Facts) -> None:
-    """Give the document its properties."""
-    properties = workbook.properties
-    properties.title, properties.creator = shorten(facts.study, TITLE_LENGTH), "tractionpower"
-    properties.subject = "Co-simulation of traction power supply and train movement"
-    properties.description = f"input hash {facts.run.get('input_hash', facts.scenario.input_hash)}"
+    book.finish()
+    return book

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from tractionpower.reporting.workbook.frame.page import Book, Column
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.page import Column
 from tractionpower.reporting.workbook.run.trains import colour_late
 
 LATE = "late [s]"

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from tractionpower.reporting.workbook.frame.cells import put, put_formula
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column, Page
+from tractionpower.reporting.texts import tr
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.formulas import Formula
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 from tractionpower.reporting.workbook.frame.plots import bars
 
 WHAT, ENERGY = "what", "energy [kWh]"
@@ -76,17 +78,18 @@ def add(book: Book) -> None:
 def _ledger(page: Page, title: str, parts: Sequence[Part], ledger: dict[str, Any]) -> Block:
     page.section(title)
     present = [part for part in parts if ledger.get(f"{part[1]}_kwh") or (part[1] not in RARE and f"{part[1]}_kwh" in ledger)]
-    block = page.table(_COLUMNS, [(side, words, ledger[f"{name}_kwh"]) for side, name, words in present])
+    block = page.table(_COLUMNS, [(tr(side), tr(words), ledger[f"{name}_kwh"]) for side, name, words in present])
     sides, values = (f"{letter}{block.first}:{letter}{block.last}" for letter in "AC")
+    given, spent = (sum(ledger[f"{name}_kwh"] for side, name, _ in present if side == which) for which in (GIVEN, SPENT))
     sums = [
-        ("sum given", f'=SUMIF({sides},"{GIVEN}",{values})', "sum 0.00"),
-        ("sum spent", f'=SUMIF({sides},"{SPENT}",{values})', "sum 0.00"),
-        ("gap", f"=C{block.last + 1}-C{block.last + 2}", "sum exponent"),
+        ("sum given", Formula(f'SUMIF({sides},"{tr(GIVEN)}",{values})', given), "sum 0.00"),
+        ("sum spent", Formula(f'SUMIF({sides},"{tr(SPENT)}",{values})', spent), "sum 0.00"),
+        ("gap", Formula(f"C{block.last + 1}-C{block.last + 2}", given - spent), "sum exponent"),
     ]
     page.next = block.last + 1
     for words, formula, style in sums:
-        put(page.sheet, page.next, 2, words, page.styles["sum text"])
-        put_formula(page.sheet, page.next, 3, formula, page.styles[style])
+        page.put(page.next, 2, tr(words), "sum text")
+        page.put(page.next, 3, formula, style)
         page.next += 1
     page.next += 1
     return block

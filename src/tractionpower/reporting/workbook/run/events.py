@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pandas as pd
 
-from tractionpower.reporting.workbook.frame.page import Book, Column, heading_of
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.page import Column, heading_of
 
 MOST = 2000
 """Rows of the list."""

@@ -12,8 +12,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from tractionpower.reporting.facts.places import LinePlaces
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import limit_in_words
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column, Page, heading_of
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page, heading_of
 
 MOST_TRAINS, MOST_POINTS, ALL_POINTS = 40, 300, 6000
 """Trains of the train graph, points of one of them, points of all together."""

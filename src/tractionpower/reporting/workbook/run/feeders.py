@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from tractionpower.model.base import parse_time
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
-from tractionpower.reporting.workbook.frame.page import Book, Column, heading_of
+from tractionpower.reporting.workbook.frame.page import Column, heading_of
 
 _KINDS = {
     "feeder": "feeder of a substation",

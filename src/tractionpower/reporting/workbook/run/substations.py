@@ -7,8 +7,9 @@ from collections.abc import Callable
 from typing import Any
 
 from tractionpower.model.base import format_time, parse_time
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column, Page, heading_of
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page, heading_of
 from tractionpower.reporting.workbook.frame.plots import bars
 
 _FIGURES = {

@@ -10,9 +10,10 @@ from openpyxl.formatting.rule import CellIsRule, FormulaRule
 from tractionpower.model.line import Line
 from tractionpower.model.timetable import TrainRun
 from tractionpower.model.vehicle import Part
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, RED_FILL, fill
 from tractionpower.reporting.workbook.frame.facts import STATES, Facts
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column, heading_of
+from tractionpower.reporting.workbook.frame.page import Block, Column, heading_of
 
 FIGURES = {
     "journey_time_s": "time",

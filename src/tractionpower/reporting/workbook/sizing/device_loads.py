@@ -11,8 +11,9 @@ from openpyxl.formatting.rule import FormulaRule
 
 from tractionpower.reporting.facts.device_words import supply_points_along_line, zones_along_line
 from tractionpower.reporting.figures.base.labels import CLOCK_STEPS_S
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL, fill
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column
+from tractionpower.reporting.workbook.frame.page import Block, Column
 from tractionpower.reporting.workbook.frame.plots import COLOURS, DASHES, Line, draw, scatter, show_clock
 
 MOST_CURVES = 12

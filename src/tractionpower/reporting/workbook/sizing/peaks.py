@@ -8,7 +8,8 @@ from typing import Any
 import pandas as pd
 
 from tractionpower.reporting.facts.device_words import KINDS
-from tractionpower.reporting.workbook.frame.page import Book, Column
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.page import Column
 from tractionpower.reporting.workbook.sizing.ratings import HOLDS, colour_use, colour_word, places_of
 
 SHARE = "highest of the setting [%]"

@@ -10,9 +10,10 @@ from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
 from tractionpower.reporting.facts.device_words import KINDS, kind_order
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, PLAIN_FILL, RED_FILL, fill, put
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
-from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Book, Column, Page
+from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Column, Page
 from tractionpower.studies.ratings.words import window_words
 
 USE, HOLDS = "utilisation [%]", "holds"

@@ -9,9 +9,10 @@ import pandas as pd
 from openpyxl.formatting.rule import FormulaRule
 
 from tractionpower.model.limits import Limit
+from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL, fill
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column, Page
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 from tractionpower.reporting.workbook.sizing.ratings import HOLDS, UNRATED, colour_word
 
 WEIGHTED, MEAN = "weighted by current [V]", "mean over time [V]"

@@ -7,15 +7,15 @@ from datetime import datetime
 from typing import Any
 
 import pandas as pd
-from openpyxl import Workbook
 
+from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.workbook.common.cover import Said, fill_in
 from tractionpower.reporting.workbook.common.limits import MET, OPEN, VIOLATED, colour_verdicts
+from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts, limit_in_words
-from tractionpower.reporting.workbook.frame.page import Book, Column, heading_of
-from tractionpower.reporting.workbook.run.book import TITLE_LENGTH, describe
+from tractionpower.reporting.workbook.frame.page import Column, heading_of
 from tractionpower.results.results import Results
 
 SHEETS = (
@@ -31,11 +31,9 @@ SHEETS = (
 WORDS = {"yes": MET, "no": VIOLATED, "": OPEN}
 
 
-def build(results: Results, scenario: Scenario) -> Any:
+def build(results: Results, scenario: Scenario, report: Report) -> Book:
     """Return the workbook; a sheet that would be empty is left out."""
-    workbook = Workbook()
-    blank = workbook.active  # styles are made on it
-    book = Book(workbook, Facts(results, scenario))
+    book = Book(Facts(results, scenario), report)
     folders = [entry["name"] for entry in results.run["compare"]["folders"]]
     front = book.page("Cover", shorten(f"{book.facts.study}: comparison", TITLE_LENGTH))
     rows = results.table("compare")
@@ -49,11 +47,8 @@ def build(results: Results, scenario: Scenario) -> Any:
     _verdicts(book)
     _inputs(book, folders)
     fill_in(book, front, (_head, _trust))
-    for page in book.pages:
-        page.finish()
-    workbook.remove(blank)
-    describe(workbook, book.facts)
-    return workbook
+    book.finish()
+    return book
 
 
 def _figures(book: Book, names: tuple[str, str], rows: pd.DataFrame, folders: Sequence[str]) -> None:

@@ -7,17 +7,17 @@ from datetime import datetime
 from typing import Any
 
 import pandas as pd
-from openpyxl import Workbook
 from openpyxl.formatting.rule import ColorScaleRule
 
+from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.sweep_data import WORDS, SweepData
 from tractionpower.reporting.workbook.common import definitions, inputs, limits
 from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in, verdict_sentence
+from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
-from tractionpower.reporting.workbook.frame.page import Block, Book, Column, heading_of
-from tractionpower.reporting.workbook.run.book import TITLE_LENGTH, describe
+from tractionpower.reporting.workbook.frame.page import Block, Column, heading_of
 from tractionpower.results.results import Results
 from tractionpower.studies.sweep.cases import number_of
 from tractionpower.studies.sweep.differences import FIGURES, HIGHER_IS_BETTER, NOT_JUDGED
@@ -37,22 +37,17 @@ PLACES = {
 """What stands beside a figure, with the style of its cells: where it came about, and when."""
 
 
-def build(results: Results, scenario: Scenario) -> Any:
+def build(results: Results, scenario: Scenario, report: Report) -> Book:
     """Return the workbook; a sheet that would be empty is left out."""
-    workbook = Workbook()
-    blank = workbook.active  # styles are made on it
-    book, data = Book(workbook, Facts(results, scenario)), SweepData(results, scenario)
+    book, data = Book(Facts(results, scenario), report), SweepData(results, scenario)
     front = book.page("Cover", shorten(f"{book.facts.study}: variants", TITLE_LENGTH))
     _cases(book, data)
     _differences(book, data)
     for add in (limits.add, inputs.add, definitions.add):
         add(book)
     fill_in(book, front, (lambda _: _head(data), lambda facts: _verdicts(facts, data), lambda facts: _trust(facts, data)))
-    for page in book.pages:
-        page.finish()
-    workbook.remove(blank)
-    describe(workbook, book.facts)
-    return workbook
+    book.finish()
+    return book
 
 
 def _shown(data: SweepData) -> list[str]:

@@ -1,0 +1,59 @@
+"""How reports look and what stands on them: company, language, choice of sheets, who made and checked them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from tractionpower.model.base import Declaration, Format, Text
+
+Language = Literal["en", "pl"]
+FigureFormat = Literal["png", "svg", "pdf"]
+
+ShortText = Annotated[Text, Field(max_length=300)]
+
+
+class Document(Declaration):
+    """What an engineering office writes on the cover of a document."""
+
+    title: ShortText = Field(default="", description="Title of the document; left out: the name of the study.")
+    project: ShortText = Field(default="", description="Project that it belongs to.")
+    client: ShortText = Field(default="", description="Who it is for.")
+    number: ShortText = Field(default="", description="Number of the document.")
+    revision: ShortText = Field(default="", description="Revision of the document.")
+    date: ShortText = Field(default="", description="Date of the document as it is to be written; left out: the day of writing.")
+    made_by: ShortText = Field(default="", description="Who made it.")
+    checked_by: ShortText = Field(default="", description="Who checked it.")
+    approved_by: ShortText = Field(default="", description="Who approved it.")
+
+
+class ReportFigures(Declaration):
+    """Which figures are drawn, and into which kinds of files."""
+
+    formats: Annotated[tuple[FigureFormat, ...], Field(min_length=1)] = Field(
+        default=("png",), description="Kinds of files; each figure is written as each of them."
+    )
+    names: tuple[Text, ...] | None = Field(default=None, description="Names of the figures to draw; left out: all.")
+
+
+class Report(Declaration):
+    """The template of reports.
+
+    It changes nothing that is computed, so it is no part of a scenario and of its hash.
+    """
+
+    format: Format = 1
+    company: ShortText = Field(default="", description="Who issues the report; on the cover and below each printed page.")
+    logo: Text | None = Field(default=None, description="Picture (PNG or JPEG) for the cover, relative to this file.")
+    language: Language = Field(default="en", description="Language of the texts: en (English), pl (Polish).")
+    paper: Literal["fit", "a4", "a3"] = Field(
+        default="fit", description="Paper of the printed sheets, landscape; fit: A4, and A3 for sheets that are too wide for it."
+    )
+    document: Document = Field(default=Document(), description="What stands on the cover beside the results.")
+    assumptions: tuple[Text, ...] = Field(default=(), description="Assumptions of the study, for the sheet of assumptions.")
+    sheets: tuple[Text, ...] | None = Field(
+        default=None, description="Sheets of the workbook in their order, by name; left out: all in the usual order."
+    )
+    leave_out: tuple[Text, ...] = Field(default=(), description="Sheets that are left out, by name.")
+    figures: ReportFigures = Field(default=ReportFigures(), description="Which figures are drawn, and how.")
