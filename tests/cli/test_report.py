@@ -146,3 +146,23 @@ def test_a_workbook_that_is_open_elsewhere(folder, capsys, monkeypatch):
     assert (folder / "report.xlsx").read_bytes() == b"open in Excel"
     assert (folder / "report.new.xlsx").stat().st_size > 1000
     assert not list(folder.rglob("*.tmp"))
+
+
+def test_a_part_of_a_run_gets_reports_of_its_own(capsys):
+    write_train_study(Path("trains"))
+    assert main(["run", "trains"]) == 0
+    folder = Path("reports") / "trains"
+    before = tables_of(folder) | {"report.xlsx": (folder / "report.xlsx").read_bytes()}
+    train = Results.open(folder).run["trains"][0]["train"]
+    assert main(["report", str(folder), "--train", train, "--from-km", "1", "--to", "06:20"]) == 0
+    part = folder / "selected" / f"train {train} to 06.20.00 from 1 km"
+    assert (part / "report.xlsx").exists()
+    assert (part / "figures" / "train_graph.png").exists()
+    assert {name: (folder / name).read_bytes() for name in before} == before
+    capsys.readouterr()
+    assert main(["report", str(folder), "--train", "none", "--track", "none"]) == 1
+    told = capsys.readouterr().err
+    assert "--train" in told
+    assert "--track" in told
+    assert main(["report", str(folder), "--from", "noon"]) == 2
+    assert "a time is HH:MM" in capsys.readouterr().err

@@ -1,33 +1,89 @@
-"""``tractionpower report DIR``: the reports of an earlier run again, without a simulation."""
+"""``tractionpower report DIR``: the reports of an earlier run again, of all of it or of a part, without a simulation."""
 
 # ruff: noqa: PLC0415 - heavy modules are imported inside the functions that need them
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+if TYPE_CHECKING:
+    from tractionpower.model.scenario import Scenario
+    from tractionpower.results.results import Results
+    from tractionpower.results.selection.selection import Selection
 
-def report(
+SELECTED = "selected"
+"""Folder beside the reports of the whole run for those of a part."""
+
+
+def report(  # noqa: PLR0917 - typer gives each option by name
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.")],
     partial: Annotated[
         bool, typer.Option("--partial", help="Read what a run that broke off has left; the reports go into DIR/partial.")
     ] = False,
+    trains: Annotated[list[str] | None, typer.Option("--train", metavar="ID", help="Only this train; may be repeated.")] = None,
+    tracks: Annotated[list[str] | None, typer.Option("--track", metavar="ID", help="Only this track; may be repeated.")] = None,
+    begin: Annotated[str | None, typer.Option("--from", metavar="HH:MM[:SS]", help="Only from this time of day on.")] = None,
+    end: Annotated[str | None, typer.Option("--to", metavar="HH:MM[:SS]", help="Only until this time of day.")] = None,
+    from_km: Annotated[float | None, typer.Option("--from-km", help="Only from this kilometre on.")] = None,
+    to_km: Annotated[float | None, typer.Option("--to-km", help="Only up to this kilometre.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help=f"Folder of the reports; default DIR, of a part DIR/{SELECTED}/<what>.")
+    ] = None,
 ) -> None:
-    """Write the reports of an earlier run again."""
+    """Write the reports of an earlier run again, of all of it or of a part."""
     from tractionpower.cli.messages import tell, tell_reports
     from tractionpower.errors import UsageError
     from tractionpower.reporting.measured import write_measured_reports
     from tractionpower.reporting.reports import write_reports
     from tractionpower.results.results import Results
-    from tractionpower.results.store import PARTIAL
 
+    selection = _selection(trains, tracks, (begin, end), (from_km, to_km))
     results = Results.open(folder, partial=partial)
-    if results.run.get("kind") == "measured":
-        tell_reports(write_measured_reports(results, folder))
+    if results.run.get("kind") == "measured" and selection.is_everything:
+        tell_reports(write_measured_reports(results, out or folder))
         return
+    scenario = _scenario(results, folder)
+    target = out or _folder(folder, selection, partial=partial)
+    status = results.run.get("status")
+    if not selection.is_everything:
+        from tractionpower.results.selection.select import select
+
+        results, scenario = select(results, scenario, selection)
+        tell(f"a part of the run: {', '.join(f'{name} {rows} rows' for name, rows in _counts(results).items())}")
+    elif target.exists() and not target.is_dir():
+        raise UsageError(f"{target} is no folder")
+    tell_reports(write_reports(results, scenario, target))
+    if status != "complete":
+        tell(f"the run is {status}: the reports hold what is in its tables")
+
+
+def _selection(
+    trains: list[str] | None,
+    tracks: list[str] | None,
+    times: tuple[str | None, str | None],
+    places_km: tuple[float | None, float | None],
+) -> Selection:
+    from tractionpower.errors import UsageError
+    from tractionpower.model.base import parse_time
+    from tractionpower.results.selection.selection import Selection
+
+    given: dict[str, Any] = {"trains": tuple(trains or ()), "tracks": tuple(tracks or ())}
+    for name, option, text in zip(("from_s", "to_s"), ("--from", "--to"), times, strict=True):
+        if text is not None:
+            given[name] = parse_time(text)
+            if given[name] is None:
+                raise UsageError(f"{option} {text!r}: a time is HH:MM or HH:MM:SS, beyond 24:00:00 for the next day")
+    given |= {name: km for name, km in zip(("from_km", "to_km"), places_km, strict=True) if km is not None}
+    return Selection(**given)
+
+
+def _scenario(results: Results, folder: Path) -> Scenario:
+    """Return what was computed, of results that reports can be made of."""
+    from tractionpower.errors import UsageError
+
     if "journeys" in results.run:
         raise UsageError(f"{folder} holds theoretical journeys, not a run; `tractionpower journey` draws them")
     scenario = results.scenario
@@ -35,6 +91,25 @@ def report(
         raise UsageError(f"{folder}: the inputs are not kept with these results (scenario.json); run the study again")
     if not results.tables:
         raise UsageError(f"{folder}: no table is there to report on; run the study again")
-    tell_reports(write_reports(results, scenario, folder / PARTIAL if partial else folder))
-    if results.run.get("status") != "complete":
-        tell(f"the run is {results.run.get('status')}: the reports hold what is in its tables")
+    return scenario
+
+
+def _folder(folder: Path, selection: Selection, *, partial: bool) -> Path:
+    """Return where the reports go: to the results, or of a part into a folder that says of which."""
+    from tractionpower.io.file_names import ENDING, file_names
+    from tractionpower.results.store import PARTIAL
+
+    base = folder / PARTIAL if partial else folder
+    if selection.is_everything:
+        return base
+    told = selection.as_dict()
+    words = [*(f"train {name}" for name in told.get("trains", ())), *(f"track {name}" for name in told.get("tracks", ()))]
+    words += [
+        f"{key.replace('_', ' ')} {told[key]}".replace(":", "") for key in ("from", "to", "from_km", "to_km") if key in told
+    ]
+    name = " ".join(words)[:120].strip()
+    return base / SELECTED / file_names([name])[name].removesuffix(ENDING)
+
+
+def _counts(results: Results) -> dict[str, int]:
+    return {name: results.row_count(name) for name in results.tables}

@@ -12,6 +12,7 @@ import pandas as pd
 from tractionpower.model.scenario import Scenario
 from tractionpower.movement.compile import PlannedRun, plan_runs
 from tractionpower.reporting.facts.places import LinePlaces
+from tractionpower.reporting.facts.selected import selection_words
 from tractionpower.results.results import Results
 
 SAME_S = 1e-6
@@ -51,6 +52,8 @@ class RunData:
     def title(self) -> str:
         """Name of the study; with rows at intervals only, it says so, since a peak between two rows does not show."""
         name = self.scenario.name or str(self.results.run.get("study", ""))
+        selected = selection_words(self.results.run)
+        name = f"{name} ({selected})" if selected else name
         every_s = self.scenario.output.every_s
         return f"{name} (rows every {every_s:g} s)" if every_s and every_s > self.scenario.clock.step_s else name
 

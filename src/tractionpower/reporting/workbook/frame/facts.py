@@ -11,6 +11,7 @@ from tractionpower.model.limits import Limit, find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.timetable import TrainRun
 from tractionpower.reporting.facts.places import LinePlaces
+from tractionpower.reporting.facts.selected import selection_words
 from tractionpower.results.results import Results
 
 KNOWN_AS = {
@@ -71,7 +72,8 @@ class Facts(Subject):
     @property
     def study(self) -> str:
         """Name of the study."""
-        return self.scenario.name or super().study
+        name, selected = self.scenario.name or super().study, selection_words(self.run)
+        return f"{name} ({selected})" if selected else name
 
     @property
     def input_hash(self) -> str:

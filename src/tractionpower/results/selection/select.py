@@ -1,0 +1,140 @@
+"""Results of a part of a run, as results of their own: figures and workbook are made of them as of any others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+
+from tractionpower.errors import UsageError, raise_errors
+from tractionpower.model.scenario import Scenario
+from tractionpower.results.columns import TABLES
+from tractionpower.results.key_figures import KeyFigure
+from tractionpower.results.results import Results
+from tractionpower.results.selection.figures import feeders_of, loads_of, substations_of, trains_of, voltages_of
+from tractionpower.results.selection.selection import Selection, check_selection, selected_rows
+from tractionpower.results.tables import make_table
+
+BIN_KM = 0.5
+"""Length of the bins of the profile [km], as in a run."""
+
+PART = "a part of the run: its key figures are of the selected rows; verdicts, ledgers and ratings are those of the whole run"
+"""What a reader of such results has to know."""
+
+OVER_TIME = ("trains", "calls", "substations", "feeders", "cabins", "switches", "loads", "rails", "earthing", "events")
+"""Tables whose rows have a time or a train each, so that a part of them is that of a part of the run."""
+
+OF_TRAINS = ("delays", "sections", "lost_time")
+"""Tables that sum up whole journeys of trains; in a window of time they say nothing."""
+
+OF_PLACES = ("profile", "rail_profile")
+"""Tables that sum up the whole run at places."""
+
+
+def select(results: Results, scenario: Scenario, selection: Selection) -> tuple[Results, Scenario]:
+    """Return results of a part of a run, with key figures that are computed anew of its rows, and the scenario of that part.
+
+    Sums over the whole run (ratings, ledgers, verdicts) do not belong to a part and are left out; with a window of time also
+    what sums up journeys of trains.
+
+    Raises
+    ------
+    InputError
+        If the selection asks for what the study does not have; all problems at once.
+    UsageError
+        If the results are not those of a run, or no row belongs to the selection.
+    """
+    if str(results.run.get("kind") or "") not in ("", "feasibility", "size"):
+        raise UsageError(f"these are results of `{results.run['kind']}`, which has no rows over time to select from")
+    raise_errors(check_selection(selection, scenario))
+    tables = dict(_tables(results, scenario, selection))
+    if not any(len(rows) for rows in tables.values()):
+        raise UsageError(f"nothing of the run is in this selection: {selection.as_dict()}")
+    frames: dict[str, pd.DataFrame] = {
+        name: tables[name].to_pandas() for name in ("trains", "calls", "substations", "feeders", "loads") if name in tables
+    }
+    step_s = max(scenario.clock.step_s, scenario.output.every_s or 0.0)
+    if len(frames.get("trains", ())) and "profile" not in tables:
+        tables["profile"] = make_table("profile", profile_of(frames["trains"]))
+    figures = [figure.as_dict() for figure in _figures(frames, scenario, _ways(results), step_s)]
+    return Results(_run(results, scenario, selection, frames), figures, tables, scenario), _clock_of(scenario, selection)
+
+
+def profile_of(rows: pd.DataFrame) -> dict[str, Any]:
+    """Return the columns of table ``profile`` from rows of table ``trains``: voltages at pantographs in bins along the line."""
+    known = rows[rows["voltage_v"].notna() & rows["position_km"].notna()]
+    tracks = sorted(known["track"].astype(str).unique())
+    middle = (np.floor(known["position_km"].to_numpy(float) / BIN_KM) + 0.5) * BIN_KM
+    found = known.assign(track=known["track"].astype(str), km=middle).groupby(["track", "km"])["voltage_v"]
+    sums = found.agg(["min", "mean", "max", "count"]).reset_index()
+    return {
+        "km": sums["km"].to_numpy(),
+        "track": (sums["track"].map(tracks.index).to_numpy(int), tracks),
+        "lowest_voltage_v": sums["min"].to_numpy(),
+        "mean_voltage_v": sums["mean"].to_numpy(),
+        "highest_voltage_v": sums["max"].to_numpy(),
+        "count": sums["count"].to_numpy(),
+        "where": (np.zeros(len(sums), int), ["pantograph"]),
+    }
+
+
+def _tables(results: Results, scenario: Scenario, selection: Selection) -> Iterator[tuple[str, pa.Table]]:
+    for name in results.tables:
+        whole = name in OF_TRAINS and not selection.has_window
+        whole |= name in OF_PLACES and not selection.has_window and not selection.trains
+        if name in TABLES and (name in OVER_TIME or whole):
+            parts = [selected_rows(name, rows, selection, scenario) for rows in results.batches(name)]
+            rows = pa.concat_tables(parts, promote_options="default").unify_dictionaries()
+            if rows.num_rows:
+                yield name, rows
+
+
+def _ways(results: Results) -> dict[str, dict[str, Any]]:
+    return {str(train["train"]): train for train in results.run.get("trains", ())}
+
+
+def _figures(
+    frames: dict[str, pd.DataFrame], scenario: Scenario, ways: dict[str, dict[str, Any]], step_s: float
+) -> Iterator[KeyFigure]:
+    counted = dict(frames)
+    for name in ("trains", "substations", "feeders", "loads"):
+        if name in counted:
+            counted[name] = counted[name][counted[name]["time_s"] >= scenario.clock.counts_from_s]
+    if len(counted.get("trains", ())):
+        yield from voltages_of(counted["trains"])
+    if len(counted.get("substations", ())):
+        yield from substations_of(counted["substations"], step_s)
+    if len(counted.get("feeders", ())):
+        yield from feeders_of(counted["feeders"])
+    if len(counted.get("loads", ())):
+        yield from loads_of(counted["loads"], step_s)
+    if len(counted.get("trains", ())):
+        yield from trains_of(counted["trains"], counted.get("calls"), ways, step_s)
+
+
+def _run(results: Results, scenario: Scenario, selection: Selection, frames: dict[str, pd.DataFrame]) -> dict[str, Any]:
+    """Return ``run.json`` of the part: what it says of the solution holds for the run, verdicts and ledgers go."""
+    clock = _clock_of(scenario, selection).clock
+    there = {str(train) for train in frames["trains"]["train"].unique()} if "trains" in frames else set()
+    gone = ("verdicts", "ledgers", "overlaps", "links", "return_circuit", "lumping", "files", "feasibility", "kind")
+    run = {key: value for key, value in results.run.items() if key not in gone}
+    return run | {
+        "notes": [PART, *run.get("notes", ())],
+        "selection": selection.as_dict(),
+        "start_s": clock.start,
+        "end_s": clock.end,
+        "steps": round((clock.end - clock.start) / clock.step_s),
+        "trains": [train for train in results.run.get("trains", ()) if train["train"] in there],
+    }
+
+
+def _clock_of(scenario: Scenario, selection: Selection) -> Scenario:
+    """Return the scenario with the clock of the part; it is never computed."""
+    clock = scenario.clock
+    start, end = max(clock.start, selection.from_s), min(clock.end, selection.to_s)
+    rest_s = clock.counts_from_s - start
+    changed = clock.model_copy(update={"start": start, "end": end, "warm_up": rest_s if 0.0 < rest_s < end - start else None})
+    return scenario.model_copy(update={"clock": changed})
