@@ -104,10 +104,9 @@ def _folder(folder: Path, selection: Selection, *, partial: bool) -> Path:
         return base
     told = selection.as_dict()
     words = [*(f"train {name}" for name in told.get("trains", ())), *(f"track {name}" for name in told.get("tracks", ()))]
-    words += [
-        f"{key.replace('_', ' ')} {told[key]}".replace(":", "") for key in ("from", "to", "from_km", "to_km") if key in told
-    ]
-    name = " ".join(words)[:120].strip()
+    words += [f"{key} {told[key].replace(':', '.')}" for key in ("from", "to") if key in told]
+    words += [f"{key} {told[f'{key}_km']:g} km" for key in ("from", "to") if f"{key}_km" in told]
+    name = " ".join(words)
     return base / SELECTED / file_names([name])[name].removesuffix(ENDING)
 
 

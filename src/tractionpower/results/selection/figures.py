@@ -131,7 +131,9 @@ def _minus(value: float | None) -> float | None:
 
 def _supply(name: str, rows: pd.DataFrame, step_s: float, late_s: float, useful: Means, k: int) -> SupplySummary:
     columns = ("auxiliary_power_kw", "drive_loss_kw", "starting_resistor_kw", "refused_regeneration_kw")
-    auxiliary_j, drive_j, starting_j, refused_j = (float(rows[column].to_numpy(float).sum()) * 1000.0 * step_s for column in columns)
+    auxiliary_j, drive_j, starting_j, refused_j = (
+        float(rows[column].to_numpy(float).sum()) * 1000.0 * step_s for column in columns
+    )
     time_s, volts = rows["time_s"].to_numpy(float), rows["voltage_v"].to_numpy(float)
     known = np.where(np.isnan(volts), np.inf, volts)
     least = int(known.argmin())
