@@ -7,6 +7,7 @@ import pytest
 from small_studies import load, make_scenario
 
 from tractionpower.errors import OutputError
+from tractionpower.model.report import Report, ReportFigures
 from tractionpower.reporting.reports import write_reports
 from tractionpower.results.results import Results
 
@@ -14,13 +15,13 @@ SCENARIO = make_scenario(load("x"))
 
 
 def fail_with(number):
-    def fail(results, scenario, path):
+    def fail(results, scenario, path, report=None):
         raise OSError(number, os.strerror(number))
 
     return fail
 
 
-def write_file(results, scenario, path):
+def write_file(results, scenario, path, report=None):
     path.write_bytes(b"report")
     return path
 
@@ -85,3 +86,20 @@ def test_figures_that_another_command_left_go(tmp_path, writers):
         (figures / f"{name}.png").write_bytes(b"earlier")
     write_reports(Results({}, [], {}), SCENARIO, tmp_path)
     assert {path.name for path in figures.iterdir()} == {"figure.png", "mine.png"}
+
+
+def test_one_part_alone_is_written(tmp_path, writers):
+    writers()
+    assert write_reports(Results({}, [], {}), SCENARIO, tmp_path, only=frozenset({"workbook"})) == [tmp_path / "report.xlsx"]
+    assert write_reports(Results({}, [], {}), SCENARIO, tmp_path / "2", only=frozenset({"figures"})) == [
+        tmp_path / "2" / "figures" / "figure.png"
+    ]
+    assert {path.name for path in (tmp_path / "2").iterdir()} == {"figures"}
+
+
+def test_figures_that_there_are_none_of_are_told_and_the_others_written(tmp_path, writers):
+    writers()
+    report = Report(figures=ReportFigures(names=("demand", "demnad", "trains/9")))
+    with pytest.raises(OutputError, match=r"none of: demnad, trains/9; figures.names takes .*demand, .*trains, trains/ID"):
+        write_reports(Results({}, [], {}), SCENARIO, tmp_path, report)
+    assert {path.name for path in tmp_path.iterdir()} == {"figures", "report.xlsx"}

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Sequence
 from pathlib import Path
 
 from tractionpower.errors import OutputError
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.texts import language
+from tractionpower.reporting.texts import language, tr
 from tractionpower.results.disk import reason_of
 from tractionpower.results.results import Results
 
@@ -19,63 +18,71 @@ WORKBOOK = "report.xlsx"
 WORKBOOKS = {"compare": "compare.xlsx"}
 """Other names of the workbook, by what ``run.json`` says that results are."""
 
-FigureWriter = Callable[[Results, Scenario, Path], list[Path]]
+PARTS = frozenset({"workbook", "figures"})
+"""Parts of the reports that can be written alone."""
 
 
-def write_reports(results: Results, scenario: Scenario, folder: Path, report: Report | None = None) -> list[Path]:
+def write_reports(
+    results: Results, scenario: Scenario, folder: Path, report: Report | None = None, *, only: frozenset[str] | None = None
+) -> list[Path]:
     """Write figures and workbook of a run, or of a study of many, into `folder` and return their paths.
 
     One report that cannot be written does not hinder the others; tables are not touched. `report` is the template: language,
-    choice of sheets and figures; None: English, all of them.
+    choice of sheets and figures; None: English, all of them. `only` names the `PARTS` to write; None: all.
 
     Raises
     ------
     OutputError
-        If a report cannot be written; all that hinders is told.
+        If a report cannot be written, or the template chooses a figure that there is none of; all that hinders is told.
     """
-    from tractionpower.reporting.workbook import write_workbook
-
-    report = report or Report()
+    report, parts = report or Report(), PARTS if only is None else only
     kind = str(results.run.get("kind") or "")
-    workbook = folder / WORKBOOKS.get(kind, WORKBOOK)
     paths: list[Path] = []
-    hindrances = []
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with language(report.language):
-            paths += _figure_writer(kind)(results, scenario, folder / FIGURES)
-        _remove_other_figures(folder / FIGURES, {*paths})
-    except OSError as error:
-        hindrances.append(f"figures cannot be written into {folder / FIGURES}: {reason_of(error)}")
-    try:
-        paths.append(write_workbook(results, scenario, workbook, report))
-    except OSError as error:
-        hindrances.append(f"{workbook} cannot be written: {reason_of(error)}")
+    hindrances: list[str] = []
+    if "figures" in parts:
+        try:
+            drawn, hindrance = _write_figures(results, scenario, folder, report)
+            paths += drawn
+            hindrances += hindrance
+        except OSError as error:
+            hindrances.append(f"figures cannot be written into {folder / FIGURES}: {reason_of(error)}")
+    if "workbook" in parts:
+        from tractionpower.reporting.workbook import write_workbook
+
+        workbook = folder / WORKBOOKS.get(kind, WORKBOOK)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            paths.append(write_workbook(results, scenario, workbook, report))
+        except OSError as error:
+            hindrances.append(f"{workbook} cannot be written: {reason_of(error)}")
     if hindrances:
         raise OutputError(f"the tables are complete, but {'; '.join(hindrances)}")
     return paths
 
 
-def _remove_other_figures(folder: Path, drawn: set[Path]) -> None:
-    """Remove the figures that another command left in a folder of figures; files that no command writes stay."""
-    from tractionpower.reporting.figures import of_run as figures
-    from tractionpower.reporting.figures.many import compare_figures, sweep_figures
-    from tractionpower.reporting.figures.many.outage_map import MAP
+def _write_figures(results: Results, scenario: Scenario, folder: Path, report: Report) -> tuple[list[Path], Sequence[str]]:
+    """Write the figures that the template chooses; return their paths, and in words which of its names no figure has."""
+    from tractionpower.reporting.figures.base.drawing import drawing
+    from tractionpower.reporting.figures.registry import figure_names, figure_writer, remove_others, unknown_names
 
-    single = (*figures.SINGLE, *figures.GRAPHS, *figures.OUTAGES, *sweep_figures.NAMES, *compare_figures.NAMES)
-    ours = {*folder.glob(f"{MAP}*.png"), *folder.glob(f"{figures.TRAINS}/*.png"), *(folder / f"{name}.png" for name in single)}
-    for stale in ours - drawn:
-        with suppress(OSError):
-            stale.unlink()
-    with suppress(OSError):  # unless something is in it
-        (folder / figures.TRAINS).rmdir()
+    folder.mkdir(parents=True, exist_ok=True)
+    with language(report.language), drawing(report.figures, source_of(results)):
+        paths = figure_writer(str(results.run.get("kind") or ""))(results, scenario, folder / FIGURES)
+    remove_others(folder / FIGURES, {*paths})
+    unknown = unknown_names(report.figures.names or (), scenario)
+    if not unknown:
+        return paths, ()
+    known = ", ".join(sorted({*figure_names(), "trains/ID"}))
+    return paths, [f"the template chooses figures that there are none of: {', '.join(unknown)}; figures.names takes {known}"]
 
 
-def _figure_writer(kind: str) -> FigureWriter:
-    """Return what writes the figures of results of a kind."""
-    from tractionpower.reporting.figures.many.compare_figures import write_compare_figures
-    from tractionpower.reporting.figures.many.sweep_figures import write_sweep_figures
-    from tractionpower.reporting.figures.of_run import write_figures, write_outage_figures
-
-    writers = {"contingency": write_outage_figures, "sweep": write_sweep_figures, "compare": write_compare_figures}
-    return writers.get(kind, write_figures)
+def source_of(results: Results) -> str:
+    """Return the line at the foot of each figure: study, inputs by the beginning of their hash, program; no date."""
+    run = results.run
+    version = str(run.get("versions", {}).get("tractionpower", ""))
+    parts = [
+        tr("study {study}", study=run["study"]) if run.get("study") else "",
+        tr("inputs {hash}", hash=str(run["input_hash"])[:12]) if run.get("input_hash") else "",
+        f"tractionpower {version}" if version else "",
+    ]
+    return ", ".join(part for part in parts if part)

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from tractionpower.reporting.facts.series import peaks_kept
 from tractionpower.reporting.figures.base.axes import clock_label, set_clock
-from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, STYLE, VERMILION, new_figure, png_names, save
+from tractionpower.reporting.figures.base.drawing import FORMATS, remove_files, wanted
+from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, STYLE, VERMILION, new_figure, save_as, stems
 from tractionpower.results.results import Results
 
 Array = NDArray[Any]
@@ -35,12 +36,13 @@ SHIFT = "shift"
 
 
 def write_measured_figures(results: Results, folder: Path) -> list[Path]:
-    """Write the figures of a comparison with a measurement as PNG into `folder` and return their paths."""
-    figures = dict(_figures(results))
-    names = png_names(figures)
-    paths = [save(figure, folder / names[name]) for name, figure in figures.items()]
-    for stale in set(folder.glob("*.png")) - set(paths):
-        stale.unlink(missing_ok=True)
+    """Write the figures of a comparison with a measurement into `folder`, as the template says, and return their paths.
+
+    Others in the folder go: it holds nothing but these.
+    """
+    names = stems([SHIFT, *results.table("measured_errors")["series"].astype(str)])
+    paths = [path for name, figure in _figures(results) if wanted(name) for path in save_as(figure, folder, names[name])]
+    remove_files({path for path in folder.glob("*.*") if path.suffix[1:] in FORMATS} - {*paths})
     return paths
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -11,7 +10,8 @@ from matplotlib.figure import Figure
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.facts.run_data import RunData
-from tractionpower.reporting.figures.base.style import png_names, save
+from tractionpower.reporting.figures.base.drawing import FORMATS, files_of, remove_files, wanted
+from tractionpower.reporting.figures.base.style import save_as, stems
 from tractionpower.reporting.figures.delays.delay_graph import delay_graphs
 from tractionpower.reporting.figures.delays.lost_figures import delays_by_cause, lost_time
 from tractionpower.reporting.figures.many.contingency_figures import (
@@ -59,54 +59,49 @@ OUTAGES = {
 }
 """Figures of a study of outages, by name, beside the maps by kilometre."""
 
+GROUPED: tuple[str, ...] = ()
+"""Beginnings of the names of figures of which a run has several."""
+
 TRAINS = "trains"
 """Folder of the figures of single trains."""
 
 
 def write_figures(results: Results, scenario: Scenario, folder: Path) -> list[Path]:
-    """Write all figures of a run as PNG into `folder` and return their paths.
+    """Write the figures of a run into `folder`, as the template says, and return their paths.
 
     A figure whose table the run has not written is left out. Figures that an earlier run left there and this one does not
     have go; other files stay.
     """
     data = RunData(results, scenario)
-    paths = [save(figure, folder / f"{name}.png") for name, figure in _figures(data)]
-    for name in {*SINGLE, *GRAPHS} - {path.stem for path in paths}:
-        _remove(folder / f"{name}.png")
-    chosen = chosen_trains(data)
-    names = png_names(chosen)
-    paths += [save(figure, folder / TRAINS / names[train]) for train, figure in train_figures(data, chosen)]
-    for stale in set((folder / TRAINS).glob("*.png")) - set(paths):
-        _remove(stale)
-    return paths
+    paths = [path for name, figure in _figures(data) for path in save_as(figure, folder, name)]
+    remove_files(files_of(folder, (*SINGLE, *GRAPHS)) - {*paths})
+    chosen = [name for name in chosen_trains(data) if wanted(f"{TRAINS}/{name}")]
+    names = stems(chosen)
+    drawn = [path for train, figure in train_figures(data, chosen) for path in save_as(figure, folder / TRAINS, names[train])]
+    remove_files({path for path in (folder / TRAINS).glob("*.*") if path.suffix[1:] in FORMATS} - {*drawn})
+    return paths + drawn
 
 
 def write_outage_figures(results: Results, scenario: Scenario, folder: Path) -> list[Path]:
-    """Write all figures of a study of outages as PNG into `folder` and return their paths.
+    """Write the figures of a study of outages into `folder`, as the template says, and return their paths.
 
     Those of an earlier study that this one does not have go; other files stay.
     """
     outages = Outages(results, scenario)
     title = scenario.name or str(results.run.get("study", ""))
-    paths = []
-    for name, draw in OUTAGES.items():
-        figure = draw(outages, title)
-        paths += [save(figure, folder / f"{name}.png")] if figure is not None else []
-    paths += [save(figure, folder / f"{name}.png") for name, figure in outage_maps(outages, title)]
-    for stale in {*folder.glob(f"{MAP}*.png"), *(folder / f"{name}.png" for name in OUTAGES)} - {*paths}:
-        _remove(stale)
+    drawn = ((name, draw(outages, title)) for name, draw in OUTAGES.items() if wanted(name))
+    paths = [path for name, figure in drawn if figure is not None for path in save_as(figure, folder, name)]
+    paths += [path for name, figure in outage_maps(outages, title) if wanted(name) for path in save_as(figure, folder, name)]
+    remove_files(files_of(folder, (*OUTAGES, MAP)) - {*paths})
     return paths
 
 
 def _figures(data: RunData) -> Iterator[tuple[str, Figure]]:
-    yield from run_graphs(data).items()
-    yield from delay_graphs(data).items()
+    """Yield the figures that are wanted and that the run has tables for, each drawn when it is its turn."""
+    for several, names in ((run_graphs, GRAPHS[:2]), (delay_graphs, GRAPHS[2:])):
+        if any(wanted(name) for name in names):
+            yield from ((name, figure) for name, figure in several(data).items() if wanted(name))
     for name, draw in SINGLE.items():
-        figure = draw(data)
+        figure = draw(data) if wanted(name) else None
         if figure is not None:
             yield name, figure
-
-
-def _remove(path: Path) -> None:
-    with suppress(OSError):
-        path.unlink()

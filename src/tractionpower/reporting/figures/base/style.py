@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import warnings
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,13 @@ import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.text import Text
+from matplotlib.ticker import ScalarFormatter
+from matplotlib.transforms import Bbox
 
 from tractionpower.io.file_names import ENDING, file_names
+from tractionpower.reporting.figures.base.drawing import current_drawing, files_of, remove_files, wanted
+from tractionpower.reporting.texts import current_language
 
 # Okabe and Ito's colours stay apart for colour-blind eyes.
 BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
@@ -20,6 +26,17 @@ COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY)
 # Lines of several tracks often lie on each other: dashes let the lower one show through.
 DASHES: tuple[Any, ...] = ("-", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 INK, GREY, PALE = "#333333", "#777777", "#dddddd"
+PAGE = 16.0 / 2.54
+"""Width of the text of a page in a report [inches]. Figures are drawn as wide as that, so that 7 pt of text are 7 pt there."""
+
+SMALLEST = 7.0
+"""Smallest text of a figure [pt]."""
+
+TITLE = 10.0
+"""Size of a title [pt]."""
+
+MOST_TITLE_LINES = 4
+
 STYLE: Any = {
     "font.size": 9.0,
     "axes.grid": True,
@@ -28,7 +45,12 @@ STYLE: Any = {
     "grid.color": PALE,
     "grid.linewidth": 0.6,
     "legend.frameon": False,
-    "figure.dpi": 150.0,
+    "figure.dpi": 200.0,
+    "agg.path.chunksize": 20_000,
+    "axes.formatter.useoffset": False,  # a voltage stands at its tick as it is
+    "svg.fonttype": "path",  # looks the same where the font is missing, as in Word on Windows; the PDF keeps its text as text
+    "svg.hashsalt": "tractionpower",  # the same figure gives the same file
+    "pdf.fonttype": 42,  # fonts are embedded as they are
     "text.parse_math": False,  # a dollar sign in a user's name is no formula
 }
 
@@ -49,26 +71,143 @@ def png_names(identifiers: Iterable[str]) -> dict[str, str]:
     >>> png_names(["EC 1/2"])
     {'EC 1/2': 'EC 1%2F2.png'}
     """
-    return {identifier: name.removesuffix(ENDING) + ".png" for identifier, name in file_names(identifiers).items()}
+    return {identifier: f"{stem}.png" for identifier, stem in stems(identifiers).items()}
+
+
+def stems(identifiers: Iterable[str]) -> dict[str, str]:
+    """Return the name of a file without its ending for each identifier; no two are the same on any system."""
+    return {identifier: name.removesuffix(ENDING) for identifier, name in file_names(identifiers).items()}
 
 
 def save_all(drawn: Mapping[str, Figure], folder: Path, names: Iterable[str]) -> list[Path]:
-    """Write figures as PNG by their names and return their paths; of `names`, those that are not drawn this time go."""
-    paths = [save(figure, folder / f"{name}.png") for name, figure in drawn.items()]
-    for name in {*names} - {*drawn}:
-        with suppress(OSError):
-            (folder / f"{name}.png").unlink()
+    """Write figures by their names as the template says and return their paths.
+
+    Files of `names` that are not written this time go, those of other kinds too.
+    """
+    paths = [path for name, figure in drawn.items() if wanted(name) for path in save_as(figure, folder, name)]
+    remove_files(files_of(folder, names) - {*paths})
     return paths
 
 
+def save_as(figure: Figure, folder: Path, stem: str) -> list[Path]:
+    """Write a figure as each kind of file that the template asks for and return the paths."""
+    return [save(figure, folder / f"{stem}.{kind}") for kind in current_drawing().formats]
+
+
 def save(figure: Figure, path: Path) -> Path:
-    """Write a figure as PNG; the file gets its name when it is complete."""
+    """Write a figure as PNG, SVG or PDF, by the ending of `path`; the file gets its name when it is complete.
+
+    The same figure gives the same bytes: no date is in them.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_suffix(".tmp")
+    temporary = path.with_name(f"{path.name}.tmp")
+    kind = path.suffix[1:]
     try:
-        with mpl.rc_context(STYLE):
-            figure.savefig(temporary, format="png")
+        with mpl.rc_context(STYLE), warnings.catch_warnings():
+            warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from")  # an emoji in a name becomes a box
+            finish(figure)
+            figure.savefig(temporary, format=kind, metadata=_about(figure, kind))
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
     return path
+
+
+def finish(figure: Figure) -> None:
+    """Give a figure what all have in common, before it is written: title within its width, decimal sign, source, layout.
+
+    Its parts are placed once, for all kinds of files.
+    """
+    engine = figure.get_layout_engine()
+    if not isinstance(engine, ConstrainedLayoutEngine):
+        return  # it has been written before
+    _wrap_title(figure)
+    if current_language() == "pl":
+        _decimal_commas(figure)
+    _write_source(figure, engine, current_drawing().source)
+    if figure.axes:
+        engine.execute(figure)
+    figure.set_layout_engine("none")
+
+
+class _CommaFormatter(ScalarFormatter):
+    """Numbers at ticks with a decimal comma."""
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return str(super().__call__(x, pos)).replace(".", ",")
+
+
+def _decimal_commas(figure: Figure) -> None:
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            if type(axis.get_major_formatter()) is ScalarFormatter:
+                axis.set_major_formatter(_CommaFormatter())
+
+
+def _wrap_title(figure: Figure) -> None:
+    """Break a title that is wider than its figure between words, and cut what is too long for a title."""
+    title: Text | None = getattr(figure, "_suptitle", None)
+    if title is None:
+        return
+    room = 0.98 * float(figure.bbox.width)
+    title.set_text(wrapped(title, title.get_text(), room, MOST_TITLE_LINES))
+
+
+def wrapped(text: Text, words: str, room: float, most_lines: int) -> str:
+    """Return words in lines that are no wider than `room` [pixels] in the font of `text`; beyond `most_lines` they are cut."""
+    lines: list[str] = []
+    for whole in words.splitlines():
+        line = ""
+        for word in re.findall(r"\S+", whole):
+            longer = f"{line} {word}".lstrip()
+            if _width(text, longer) <= room:
+                line = longer
+                continue
+            lines += [line] if line else []
+            line = _cut(text, word, room)
+        lines.append(line)
+    return "\n".join(lines if len(lines) <= most_lines else [*lines[: most_lines - 1], f"{lines[most_lines - 1]} …"])
+
+
+def _cut(text: Text, word: str, room: float) -> str:
+    """Return a word, cut where it alone is wider than the room."""
+    if _width(text, word) <= room:
+        return word
+    low, high = 0, len(word)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if _width(text, f"{word[:middle]}…") <= room else (low, middle)
+    return f"{word[:low]}…"
+
+
+def _width(text: Text, words: str) -> float:
+    """Return how wide words are in the font of a text [pixels]."""
+    before = text.get_text()
+    text.set_text(words)
+    width = float(text.get_window_extent().width)
+    text.set_text(before)
+    return width
+
+
+def _write_source(figure: Figure, engine: ConstrainedLayoutEngine, source: str) -> None:
+    """Write where a figure comes from at its foot, in a line that is added below all else."""
+    if not source:
+        return
+    width, height = figure.get_size_inches()
+    line = 1.7 * SMALLEST / 72.0
+    figure.set_size_inches(width, height + line)
+    share = line / (height + line)
+    engine.set(rect=(0.0, share, 1.0, 1.0 - share))
+    for legend in figure.legends:
+        legend.set_bbox_to_anchor(Bbox.from_bounds(0.0, share, 1.0, 1.0 - share), transform=figure.transFigure)
+    text = figure.text(0.01, 0.35 * share, "", fontsize=SMALLEST, color=GREY, va="bottom", ha="left", in_layout=False)
+    text.set_text(wrapped(text, source, 0.98 * float(figure.bbox.width), 1))
+
+
+def _about(figure: Figure, kind: str) -> dict[str, Any]:
+    """Return what a file tells about itself: its title and who drew it, nothing that changes from day to day."""
+    title = "".join(c if c.isprintable() else " " for c in figure.get_suptitle().split("\n")[0])
+    if kind == "png":
+        return {"Title": title, "Software": "tractionpower"}
+    nothing = {"Date": None} if kind == "svg" else {"CreationDate": None, "Producer": None}
+    return {"Title": title, "Creator": "tractionpower", **nothing}
