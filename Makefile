@@ -39,6 +39,7 @@ bench: setup   ## measure speed beside peers; see docs/performance.md
 
 docs: setup    ## reference pages made from the declarations
 	$(BIN)/python docs/make_reference.py
+	$(BIN)/python docs/make_texts.py
 
 images: setup  ## figures of the README drawn anew, from a day of the real line
 	$(BIN)/python docs/make_images.py

@@ -37,7 +37,9 @@ def texts() -> list[Text]:
     for file in sorted(CODE.rglob("*.py")):
         found.update(_texts_of(ast.parse(file.read_text(encoding="utf-8"))))
     plurals = {text[0] for text in found if isinstance(text, tuple)}
-    return sorted((text for text in found if text and text not in plurals), key=lambda text: (text if isinstance(text, str) else text[0]))
+    return sorted(
+        (text for text in found if text and text not in plurals), key=lambda text: text if isinstance(text, str) else text[0]
+    )
 
 
 def updated(language: str) -> Catalog:
