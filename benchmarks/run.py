@@ -11,6 +11,7 @@ import line
 import many
 import peers
 import report
+import reports
 import solver
 import startup
 import timetable
@@ -42,6 +43,10 @@ def _many(quick: bool) -> str:
     return many.describe(many.measure_all(quick))
 
 
+def _reports(quick: bool) -> str:
+    return reports.describe(reports.measure(1 if quick else 3))
+
+
 def _peers(quick: bool) -> str:
     return peers.describe(peers.compare(*((30, 3) if quick else (60, 11))))
 
@@ -57,6 +62,7 @@ PARTS: dict[str, Callable[[bool], str]] = {
     "line": _line,
     "timetable": _timetable,
     "many": _many,
+    "reports": _reports,
     "peers": _peers,
     "startup": _startup,
 }
