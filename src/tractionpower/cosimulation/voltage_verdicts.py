@@ -14,6 +14,7 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.results.extremes import Extremes
 from tractionpower.results.key_figures import KeyFigure, voltage_figure
 from tractionpower.results.spells import TOLERANCE_V
+from tractionpower.results.verdicts import sense_of_limit
 from tractionpower.supply.compile import SupplyTables
 
 
@@ -119,7 +120,8 @@ class VoltageVerdicts:
         limit = self._limit(name)
         return {
             "name": title, "value": value, "unit": unit, "place": place, "time": format_time(when) if np.isfinite(when) else "",
-            "limit": name, "limit_value": limit.value, "source": limit.source, "status": limit.status, "met": bool(met),
+            "limit": name, "limit_value": limit.value, "source": limit.source, "status": limit.status,
+            "sense": sense_of_limit(name), "met": bool(met),
         }  # fmt: skip
 
     def _spell_figures(self) -> Iterator[KeyFigure]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tractionpower.model.base import DAY_S
 from tractionpower.model.limits import Limit, common_limits
+from tractionpower.results.verdicts import AT_MOST
 
 Array = NDArray[np.float64]
 
@@ -97,7 +98,7 @@ def _row(title: str, unit: str, values: Array, places: Sequence[str], limit: Lim
     k = int(values.argmax())
     return {
         "name": title, "value": float(values[k]), "unit": unit, "place": places[k], "time": "", "limit": limit.name,
-        "limit_value": limit.value, "source": limit.source, "status": limit.status,
+        "limit_value": limit.value, "source": limit.source, "status": limit.status, "sense": AT_MOST,
         "met": bool(values[k] <= limit.value * (1.0 + _TOLERANCE)),
     }  # fmt: skip
 

@@ -20,6 +20,7 @@ from tractionpower.kernels.windows import GAP_STEPS
 from tractionpower.model.base import format_time
 from tractionpower.model.limits import Limit, common_limits
 from tractionpower.results.spells import TOLERANCE_V, TrainSpells
+from tractionpower.results.verdicts import AT_MOST
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -181,7 +182,8 @@ def touch_verdicts(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
         {
             "name": f"longest spell of the rail potential above {row['voltage_v']:g} V", "value": row["longest_s"], "unit": "s",
             "place": row["place"], "time": row["time"], "limit": row["limit"], "limit_value": row["may_last_s"],
-            "source": row["source"], "status": row["status"], "met": row["met"], "voltage_v": row["voltage_v"],
+            "source": row["source"], "status": row["status"], "sense": AT_MOST, "met": row["met"],
+            "voltage_v": row["voltage_v"],
         }
         for row in rows
         if row["met"] is not None

@@ -23,6 +23,12 @@ def small(small_file):
 
 
 @pytest.fixture(scope="session")
+def small_values(small_file):
+    """Return the same workbook with the values that its formulas come to."""
+    return load_workbook(small_file, data_only=True)
+
+
+@pytest.fixture(scope="session")
 def nasty_file(tmp_path_factory):
     return write_workbook(*make_case(trains=8, nasty=True), tmp_path_factory.mktemp("nasty") / "report.xlsx")
 

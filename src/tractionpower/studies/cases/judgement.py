@@ -11,6 +11,7 @@ from tractionpower.model.base import format_time
 from tractionpower.model.limits import USEFUL_NAMES, common_limits, find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.spells import TOLERANCE_V
+from tractionpower.results.verdicts import AT_LEAST, AT_MOST
 from tractionpower.supply.ratings import Rating
 
 Row = Mapping[str, Any]
@@ -64,7 +65,8 @@ class Check:
         return {
             "name": self.name, "value": float(row[self.figure]), "unit": self.unit,
             "place": f"{row['case']}: {where}" if where else row["case"], "time": "" if seconds is None else format_time(seconds),
-            "limit": self.limit, "limit_value": self.value, "source": self.source, "status": self.status, "met": self.is_met(row),
+            "limit": self.limit, "limit_value": self.value, "source": self.source, "status": self.status,
+            "sense": AT_LEAST if self.is_floor else AT_MOST, "met": self.is_met(row),
         }  # fmt: skip
 
 

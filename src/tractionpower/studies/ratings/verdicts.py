@@ -9,6 +9,7 @@ from tractionpower.model.base import format_time
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.spells import TOLERANCE_V
+from tractionpower.results.verdicts import sense_of_limit
 from tractionpower.results.words import yes_or_no
 from tractionpower.studies.ratings.findings import Findings, Row
 from tractionpower.studies.ratings.use import Use
@@ -61,7 +62,8 @@ def _zones(scenario: Scenario, found: Findings) -> Iterator[Row]:
 def _verdict(name: str, value: tuple[float, str], where: tuple[str, str], limit: _Limit, met: str) -> Row:
     return {
         "name": name, "value": value[0], "unit": value[1], "place": where[0], "time": where[1], "limit": limit.name,
-        "limit_value": limit.value, "source": limit.source, "status": limit.status, "met": met == "yes",
+        "limit_value": limit.value, "source": limit.source, "status": limit.status,
+        "sense": sense_of_limit(limit.name), "met": met == "yes",
     }  # fmt: skip
 
 

@@ -30,7 +30,7 @@ def rows_of(sheet, first="train"):
 
 
 def test_the_sheets_stand_behind_the_cover(book):
-    assert book.sheetnames[:6] == ["Cover", *SHEETS]
+    assert book.sheetnames[:7] == ["Cover", "Acceptance", *SHEETS]
 
 
 def test_the_cover_says_the_verdict_first(book):

@@ -24,7 +24,7 @@ def book(study, tmp_path_factory):
 
 def test_the_sheets(book):
     assert book.sheetnames[:7] == [
-        "Cover", "Outages", "All cases", "Device envelope", "Envelope", "Delays in outages", "Limits",
+        "Cover", "Acceptance", "Outages", "All cases", "Device envelope", "Envelope", "Delays in outages",
     ]  # fmt: skip
     assert "Inputs limits" in book.sheetnames
 

@@ -26,7 +26,7 @@ def book(study, tmp_path_factory):
 
 
 def test_the_sheets_stand_behind_the_cover(book, small):
-    assert book.sheetnames[1:10] == SHEETS
+    assert book.sheetnames[2:11] == SHEETS
     assert not set(SHEETS) & set(small.sheetnames)
 
 

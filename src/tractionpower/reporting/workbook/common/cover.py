@@ -10,7 +10,7 @@ from typing import Any
 from openpyxl.worksheet.hyperlink import Hyperlink
 
 from tractionpower.model.base import format_time
-from tractionpower.reporting.workbook.common.limits import verdict_word
+from tractionpower.reporting.workbook.common.acceptance import verdict_word
 from tractionpower.reporting.workbook.feasibility.feasibility import verdict_in_words
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import put

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from openpyxl import Workbook
 from openpyxl.utils import quote_sheetname
@@ -15,6 +15,9 @@ from tractionpower.reporting.workbook.frame.cells import Styles, shorten
 from tractionpower.reporting.workbook.frame.facts import Facts, Subject
 from tractionpower.reporting.workbook.frame.formulas import Formula, Names
 from tractionpower.reporting.workbook.frame.page import Page
+
+if TYPE_CHECKING:
+    from tractionpower.reporting.workbook.common.acceptance import Accepted
 
 TITLE_LENGTH = 200
 """Characters of the title in the properties of the document."""
@@ -43,6 +46,8 @@ class Book:
         self.names = Names()
         self.pages: list[Page] = []
         self.pending: list[Pending] = []
+        self.acceptance: list[Accepted] = []
+        """What the sheets judge, for the sheet of acceptance."""
         self.cached: dict[str, dict[str, Any]] = {}
         """Values of the formulas by sheet and cell, once the book is finished."""
 

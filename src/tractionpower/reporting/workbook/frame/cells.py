@@ -15,6 +15,9 @@ from openpyxl.styles import Alignment, Border, Font, PatternFill, Side
 from tractionpower.model.base import format_time
 
 BLUE, INK, GREY, PALE = "1F4E79", "333333", "777777", "D9D9D9"
+EDITABLE_FILL = "FFF9C4"
+"""Cells that are made to be edited."""
+
 GREEN_FILL, RED_FILL, AMBER_FILL, PLAIN_FILL = "C6EFCE", "FFC7CE", "FFEB9C", "F2F2F2"
 
 SECONDS_PER_DAY = 86400.0
@@ -41,6 +44,8 @@ _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 _FORMULA_SIGNS = ("=", "+", "-", "@", "\t", "'")
 _LINE = Side(style="thin", color=PALE)
 _BORDER = Border(bottom=_LINE)
+_EDGE = Side(style="thin", color=GREY)
+_BOX = Border(left=_EDGE, right=_EDGE, top=_EDGE, bottom=_EDGE)
 
 
 class Styles:
@@ -134,6 +139,8 @@ def _look(name: str) -> dict[str, Any]:
     if name in FORMATS:
         look = {"alignment": Alignment(horizontal="right", vertical="top"), "border": _BORDER, "number_format": FORMATS[name]}
         return look
+    if name.startswith("editable "):
+        return _look(name[9:]) | {"fill": fill(EDITABLE_FILL), "border": _BOX}
     if name.startswith("sum "):
         return _look(name[4:]) | {"font": Font(bold=True), "border": Border(top=Side(style="thin", color=INK))}
     wrapped = Alignment(wrap_text=True, vertical="top")

@@ -12,23 +12,25 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.model.timetable import TrainRun
 from tractionpower.reporting.facts.places import LinePlaces
 from tractionpower.reporting.facts.selected import selection_words
+from tractionpower.reporting.texts import mark, tr
 from tractionpower.results.results import Results
 
 KNOWN_AS = {
-    "verified": "verified against the text of its source",
-    "secondary": "secondary: from a source that quotes it",
-    "recalled": "recalled from memory",
-    "user": "given by the user",
+    "verified": mark("verified against the text of its source"),
+    "secondary": mark("secondary: from a source that quotes it"),
+    "recalled": mark("recalled from memory"),
+    "user": mark("given by the user"),
+    "derived": mark("derived by the program from its source"),
 }
 """How the value of a limit is known, by its status."""
 
 STATES = {
-    "before": "left before the clock",
-    "left": "left the line",
-    "stays": "stays at its end",
-    "on_line": "still on the line at the end",
-    "outside": "did not enter",
-    "stuck": "stuck on the line",
+    "before": mark("left before the clock"),
+    "left": mark("left the line"),
+    "stays": mark("stays at its end"),
+    "on_line": mark("still on the line at the end"),
+    "outside": mark("did not enter"),
+    "stuck": mark("stuck on the line"),
 }
 """What became of a train, by the status in ``run.json``."""
 
@@ -40,7 +42,7 @@ def limit_in_words(name: str) -> str:
     'U_min2'
     """
     if name.startswith("touch_"):
-        return f"time above {name}"
+        return tr("time above {limit}", limit=name)
     return f"U_{name[2:]}" if name.startswith("u_") else name
 
 
@@ -89,7 +91,7 @@ class Facts(Subject):
     @property
     def verdicts(self) -> list[dict[str, Any]]:
         """Verdicts of the run, each with all its keys."""
-        keys = ("name", "value", "unit", "place", "time", "limit", "limit_value", "source", "status", "met")
+        keys = ("name", "value", "unit", "place", "time", "limit", "limit_value", "source", "status", "sense", "met")
         found = [{key: verdict.get(key) for key in keys} for verdict in self.run.get("verdicts", [])]
         return [verdict | {"met": None if verdict["met"] is None else bool(verdict["met"])} for verdict in found]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.outages import Outages
-from tractionpower.reporting.workbook.common import definitions, inputs, limits
+from tractionpower.reporting.workbook.common import acceptance, definitions, inputs
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
@@ -19,7 +19,7 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
     front = book.page("Cover", shorten(f"{book.facts.study}: outages", TITLE_LENGTH))
     for add in (outage_table.add, outage_envelopes.add, outage_delays.add):
         add(book, outages)
-    for add_inputs in (limits.add, inputs.add, definitions.add):
+    for add_inputs in (inputs.add, definitions.add, acceptance.add):
         add_inputs(book)
     outage_cover.fill(book, front, outages)
     book.finish()

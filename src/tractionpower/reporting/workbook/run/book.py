@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.workbook.common import cover, definitions, inputs, limits
+from tractionpower.reporting.workbook.common import acceptance, cover, definitions, inputs
 from tractionpower.reporting.workbook.feasibility import delays, feasibility, lost_time, remedies, sections
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import shorten
@@ -33,13 +33,14 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
         add(book)
     for add in (ratings.add, peaks.add, device_loads.add, useful_voltage.add):
         add(book)
-    for add in (limits.add, trains.add, calls.add, substations.add, feeders.add, return_circuit.add, energy.add, key_figures.add):
+    for add in (trains.add, calls.add, substations.add, feeders.add, return_circuit.add, energy.add, key_figures.add):
         add(book)
     charted = book.page("Charts", "Charts")
     drawn = extracts.add(book)
     charts.draw_all(charted, drawn)
     for add in (events.add, inputs.add, definitions.add):
         add(book)
+    acceptance.add(book)
     cover.fill_in(book, front)
     book.finish()
     return book

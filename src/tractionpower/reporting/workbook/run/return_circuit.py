@@ -9,7 +9,7 @@ import pandas as pd
 
 from tractionpower.model.base import parse_time
 from tractionpower.reporting.facts.places import told
-from tractionpower.reporting.workbook.common.limits import OPEN, colour_verdicts, verdict_word
+from tractionpower.reporting.workbook.common.acceptance import OPEN, colour_verdicts, verdict_word
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page, heading_of

@@ -10,8 +10,8 @@ import pandas as pd
 
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.workbook.common.acceptance import MET, OPEN, VIOLATED, colour_verdicts
 from tractionpower.reporting.workbook.common.cover import Said, fill_in
-from tractionpower.reporting.workbook.common.limits import MET, OPEN, VIOLATED, colour_verdicts
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts, limit_in_words

@@ -12,7 +12,7 @@ from openpyxl.formatting.rule import ColorScaleRule
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.sweep_data import WORDS, SweepData
-from tractionpower.reporting.workbook.common import definitions, inputs, limits
+from tractionpower.reporting.workbook.common import acceptance, definitions, inputs
 from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in, verdict_sentence
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, shorten
@@ -43,7 +43,7 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
     front = book.page("Cover", shorten(f"{book.facts.study}: variants", TITLE_LENGTH))
     _cases(book, data)
     _differences(book, data)
-    for add in (limits.add, inputs.add, definitions.add):
+    for add in (inputs.add, definitions.add, acceptance.add):
         add(book)
     fill_in(book, front, (lambda _: _head(data), lambda facts: _verdicts(facts, data), lambda facts: _trust(facts, data)))
     book.finish()

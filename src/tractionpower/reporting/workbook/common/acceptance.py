@@ -1,0 +1,273 @@
+"""The sheet of acceptance: what was found against what is allowed, with limits that can be edited and verdicts that follow."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from openpyxl.formatting.rule import CellIsRule
+
+from tractionpower.reporting.texts import mark, recorded, tr
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill
+from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, limit_in_words
+from tractionpower.reporting.workbook.frame.formulas import Formula
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page
+from tractionpower.results.spells import TOLERANCE_V
+from tractionpower.results.verdicts import AT_LEAST, Sense, sense_of
+
+MET, VIOLATED, OPEN = mark("met"), mark("violated"), mark("not judged")
+
+COUNTS = {"acceptance_met": MET, "acceptance_violated": VIOLATED, "acceptance_open": OPEN}
+"""Names of the cells that count the verdicts, with the word that they count."""
+
+ALL = "acceptance_all"
+"""Name of the cell that counts all rows."""
+
+GROUPS = {
+    "u_useful": mark("Mean useful voltage"),
+    "u_": mark("Voltage"),
+    "t_max2": mark("Voltage"),
+    "touch_": mark("Return circuit"),
+    "stray_": mark("Return circuit"),
+    "utilisation": mark("Ratings"),
+    "breaker": mark("Breakers"),
+    "trips": mark("Breakers"),
+    "contract": mark("Contracts"),
+    "tolerance_s": mark("Timetable"),
+}
+"""Groups by how the name of a limit begins, the more special first."""
+
+SERVED = mark("Service")
+"""Group of what has no limit but must not be: trains that stand, loads without a voltage."""
+
+ROUNDING = "1E-9"
+"""Share of a limit by which a value may be beyond it, as the studies have it: a sum of rounded numbers."""
+
+_SENSES = {"at_least": mark("not below"), "at_most": mark("not above")}
+
+_COLUMNS = (
+    Column("no.", "0"),
+    Column("what is judged", widest=34),
+    Column("found", "0.0", key="found"),
+    Column("must be", widest=10),
+    Column("limit value", "0.0", key="limit"),
+    Column("unit", widest=8),
+    Column("tolerance", "general", key="tolerance"),
+    Column("margin", "0.0", key="margin"),
+    Column("verdict", widest=12, key="verdict"),
+    Column("group", widest=16),
+    Column("place of the worst", widest=30),
+    Column("time of day"),
+    Column("limit", widest=18),
+    Column("status of the limit", widest=22),
+    Column("source of the limit", widest=46),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    """A row of the sheet: something that was found, and its limit.
+
+    Attributes
+    ----------
+    name
+        What is judged, as the verdict of ``run.json`` on the same is called, if there is one: this row takes its place.
+    limit_name, limit_value, unit
+        Name of the limit and its value, in the unit of what was found. A number can be edited in the workbook, in a cell that is
+        named ``limit_<name>``; rows with the same limit and value share it. A formula says that the value stands on another
+        sheet.
+    sense
+        ``at_least``: the found value must not be below the limit; ``at_most``: not above.
+    found
+        What was found: a number, or a formula on data of the workbook; None if it could not be judged.
+    place, time
+        Where and when the worst was found.
+    status, source
+        How the limit is known, by the words of the limits table, and where it comes from.
+    group
+        What it belongs to, English; rows of a group stand together. Empty: by the limit.
+    tolerance
+        By how much it may be beyond the limit, in the same unit.
+    met
+        What the program says where that is no matter of a number: None lets the formula decide.
+    """
+
+    name: str
+    limit_name: str
+    limit_value: float | Formula | None
+    unit: str
+    sense: Sense
+    found: float | Formula | None
+    place: str = ""
+    time: str = ""
+    status: str = ""
+    source: str = ""
+    group: str = ""
+    tolerance: float = 0.0
+    met: bool | None = None
+
+
+def add(book: Book) -> None:
+    """Add the sheet, as the second of the book, when all sheets that judge have told their rows; none without any rows."""
+    rows = accepted_rows(book)
+    if not rows:
+        return
+    page = book.page("Acceptance", "Acceptance: what was found against what is allowed")
+    book.pages.insert(1, book.pages.pop())
+    page.note(
+        "Yellow cells can be edited: margins, verdicts and the cover follow. A limit whose status is not 'verified' is an"
+        " editable value of the limits table: the check is against that value, which is no statement about a standard."
+    )
+    counts_row = _room_for_counts(page)
+    block = page.table(_COLUMNS, _lines(rows), frozen=True)
+    _name_limits(book, page, block, rows)
+    colour_verdicts(block)
+    book.define("acceptance_verdicts", page, block.cells("verdict"))
+    _count(book, page, counts_row, [_word(row) for row in rows])
+
+
+def accepted_rows(book: Book) -> list[Accepted]:
+    """Return the rows: verdicts of the run, a sheet's row in the place of each that it tells, then those of sheets alone."""
+    own = {(row.name, row.limit_name): row for row in book.acceptance}
+    said = [_accepted(verdict) for verdict in book.facts.verdicts]
+    rows = [own.pop((row.name, row.limit_name), row) for row in said]
+    rows += own.values()
+    order = {name: number for number, name in enumerate(dict.fromkeys(map(group_of, rows)))}
+    return sorted(rows, key=lambda row: order[group_of(row)])
+
+
+def group_of(row: Accepted) -> str:
+    """Return the group of a row."""
+    return row.group or next((name for begin, name in GROUPS.items() if row.limit_name.startswith(begin)), SERVED)
+
+
+def verdict_word(verdict: dict[str, Any]) -> str:
+    """Return a verdict of ``run.json`` in a word, in the language of the report."""
+    return tr({True: MET, False: VIOLATED}.get(verdict["met"], OPEN))
+
+
+def colour_verdicts(block: Block) -> None:
+    """Let the verdicts of a table show green, red or amber by their word."""
+    colour_words(block.sheet, block.cells("verdict"))
+
+
+def colour_words(sheet: Any, area: str) -> None:
+    """Let cells that hold a verdict show green, red or amber by their word."""
+    for word, colour in ((MET, GREEN_FILL), (VIOLATED, RED_FILL), (OPEN, AMBER_FILL)):
+        sheet.conditional_formatting.add(area, CellIsRule(operator="equal", formula=[f'"{tr(word)}"'], fill=fill(colour)))
+
+
+def _accepted(verdict: dict[str, Any]) -> Accepted:
+    """Return the row of a verdict of ``run.json``."""
+    limit, unit = str(verdict["limit"] or ""), str(verdict["unit"] or "")
+    place, time, status, source = (str(verdict[key] or "") for key in ("place", "time", "status", "source"))
+    return Accepted(
+        str(verdict["name"]), limit, verdict["limit_value"], unit, sense_of(verdict), verdict["value"],
+        place, time, status, source, tolerance=TOLERANCE_V if unit == "V" and limit.startswith("u_") else 0.0, met=verdict["met"],
+    )  # fmt: skip
+
+
+def _lines(rows: Sequence[Accepted]) -> Iterator[tuple[Any, ...]]:
+    cells = cell_names(rows)
+    known: set[str] = set()
+    for number, (row, cell) in enumerate(zip(rows, cells, strict=True), 1):
+        limit = Formula(f"{{{cell}}}", row.limit_value) if cell in known else row.limit_value
+        known.add(cell)
+        yield (
+            number, recorded(row.name), row.found, tr(_SENSES[row.sense]), limit, row.unit, row.tolerance or None,
+            _margin(row), _verdict(row), tr(group_of(row)), recorded(row.place), row.time,
+            limit_in_words(row.limit_name), tr(KNOWN_AS.get(row.status, row.status)), recorded(row.source),
+        )  # fmt: skip
+
+
+def cell_names(rows: Iterable[Accepted]) -> list[str]:
+    """Return for each row the name of the cell that holds its limit; equal limits of a name share one, others are numbered."""
+    names: list[str] = []
+    taken: dict[str, Any] = {}
+    for row in rows:
+        lasts = "_s" if row.limit_name.startswith("touch_") and row.unit == "s" else ""  # the limit of that name is a voltage
+        base = name = "limit_" + re.sub(r"[^A-Za-z0-9_]", "_", row.limit_name) + lasts
+        count = 1
+        while taken.setdefault(name, (row.limit_value, row.unit)) != (row.limit_value, row.unit):
+            count += 1
+            name = f"{base}_{count}"
+        names.append(name)
+    return names
+
+
+def _margin(row: Accepted) -> Formula | None:
+    """Return how far the found value is from the limit, negative beyond it."""
+    found, limit = _number(row.found), _number(row.limit_value)
+    if limit is None:
+        return None
+    text = "{found}-{limit}" if row.sense == AT_LEAST else "{limit}-{found}"
+    value = None if found is None else found - limit if row.sense == AT_LEAST else limit - found
+    return Formula(f'IF(ISNUMBER({{found}}),{text},"")', "" if value is None else value)
+
+
+def _verdict(row: Accepted) -> Formula | str:
+    """Return the verdict as a formula; as a word where the program says other than the numbers do."""
+    word = _word(row)
+    if row.met is not None and word != _by_numbers(row):
+        return tr(word)
+    if row.limit_value is None:
+        return tr(word)
+    beyond = f"{{margin}}>=-{{tolerance}}-{ROUNDING}*ABS({{limit}})"
+    return Formula(f'IF(ISNUMBER({{margin}}),IF({beyond},"{tr(MET)}","{tr(VIOLATED)}"),"{tr(OPEN)}")', tr(word))
+
+
+def _word(row: Accepted) -> str:
+    return _by_numbers(row) if row.met is None else MET if row.met else VIOLATED
+
+
+def _by_numbers(row: Accepted) -> str:
+    found, limit = _number(row.found), _number(row.limit_value)
+    if found is None or limit is None:
+        return OPEN
+    margin = found - limit if row.sense == AT_LEAST else limit - found
+    return MET if margin >= -row.tolerance - float(ROUNDING) * abs(limit) else VIOLATED
+
+
+def _number(value: float | Formula | None) -> float | None:
+    """Return what a cell comes to, None where that is no number."""
+    known = value.value if isinstance(value, Formula) else value
+    return None if known is None or isinstance(known, str) or math.isnan(known) else float(known)
+
+
+def _name_limits(book: Book, page: Page, block: Block, rows: Sequence[Accepted]) -> None:
+    """Name the first cell of each limit, and show those that can be edited so; small numbers get more digits."""
+    known: set[str] = set()
+    for row, cell, at in zip(rows, cell_names(rows), range(block.first, block.last + 1), strict=True):
+        limit = _number(row.limit_value)
+        style = "0.0" if limit is None or abs(limit) >= 10.0 or limit == 0.0 else "0.00"
+        for key in ("found", "margin"):
+            page.sheet[block.cell(key, at)]._style = page.styles[style]
+        is_first = cell not in known and limit is not None
+        editable = is_first and not isinstance(row.limit_value, Formula)
+        page.sheet[block.cell("limit", at)]._style = page.styles[f"editable {style}" if editable else style]
+        if is_first:
+            known.add(cell)
+            book.define(cell, page, block.cell("limit", at))
+
+
+def _room_for_counts(page: Page) -> int:
+    """Keep rows free for the counts, and return the first of them."""
+    page.next += len(COUNTS) + 2
+    return page.next - len(COUNTS) - 2
+
+
+def _count(book: Book, page: Page, row: int, words: Sequence[str]) -> None:
+    """Write how many limits are met, violated, and not judged."""
+    for name, word in COUNTS.items():
+        page.put(row, 1, "", "plain")
+        page.put(row, 2, tr(word), "label")
+        page.put(row, 3, Formula(f'COUNTIF({{acceptance_verdicts}},"{tr(word)}")', words.count(word)), "0")
+        book.define(name, page, f"C{row}")
+        row += 1
+    page.put(row, 2, tr("all"), "label")
+    page.put(row, 3, Formula("+".join(f"{{{name}}}" for name in COUNTS), len(words)), "sum 0")
+    book.define(ALL, page, f"C{row}")
