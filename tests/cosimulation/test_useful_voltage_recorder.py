@@ -83,6 +83,16 @@ def test_trains_are_those_of_the_run_and_the_dimensioning_one_is_the_lowest(thre
     assert (mine["met"] == "yes").all()
 
 
+def test_the_means_follow_from_the_sums_in_the_table(three):
+    found = three[0].useful_voltage().to_pandas()
+    weighted = 1000.0 * found["power_sum_kw"] / found["current_sum_a"].where(found["current_sum_a"] > 0.0)
+    mean = found["voltage_time_vs"] / found["counted_s"].where(found["counted_s"] > 0.0)
+    for quotient, name in ((weighted, "current_weighted_v"), (mean, "time_mean_v")):
+        assert (quotient.isna() == found[name].isna()).all()
+        np.testing.assert_allclose(quotient.dropna(), found[name].dropna(), rtol=1e-7)
+    assert len(weighted.dropna()) > 3
+
+
 def test_without_a_shortest_stay_zones_are_those_of_the_key_figures():
     recorder, results = recorded(asking(couple(*RUNS, end_s=900.0), shortest_stay_s=0.0), whole_run_only=True)
     (means,) = recorder.means()

@@ -33,6 +33,12 @@ def test_two_trains_by_hand():
     # T = 2 s for both: (3000 * 2000 + 2700 * 1000) / (2000 + 1000)
     np.testing.assert_allclose(useful.of_zones().current_weighted_v, [2900.0, np.nan])
     np.testing.assert_allclose(useful.of_zones().time_mean_v, [3000.0, np.nan])
+    # The sums: train 0 draws 3 MW at 1000 A, train 1 on the mean half of 2.7 MW at 500 A.
+    zones, trains = useful.of_zones(), useful.of_trains()
+    np.testing.assert_allclose((zones.power_w[0], zones.current_a[0]), (3.0e6 + 1.35e6, 1500.0))
+    np.testing.assert_allclose((zones.voltage_time_vs[0], zones.counted_s[0]), (12_000.0, 4.0))
+    np.testing.assert_allclose(trains.current_a, [1000.0, 500.0, 0.0])
+    np.testing.assert_allclose(trains.counted_s, [2.0, 1.0, 0.0])  # with traction effort
 
 
 def test_a_train_counts_by_its_mean_current_in_the_zone():

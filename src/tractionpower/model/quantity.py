@@ -33,6 +33,7 @@ UNITS: dict[str, str] = {
     "ah": "Ah",
     "kn": "kN",
     "ohm": "Ω",
+    "vs": "V s",
     "km": "km",
     "kw": "kW",
     "pu": "p.u.",

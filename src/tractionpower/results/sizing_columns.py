@@ -92,6 +92,18 @@ SIZING_TABLES: dict[str, tuple[Column, ...]] = {
         column("to_s", "End of the window.", "f8"),
         column("current_weighted_v", "Mean useful voltage, weighted by the currents of the trains."),
         column("time_mean_v", "Mean useful voltage, as a mean over time."),
+        column("power_sum_kw", "Sum over these trains of the mean of voltage times magnitude of current while there.", "f8"),
+        column(
+            "current_sum_a",
+            "Sum over these trains of the mean magnitude of current while there; current_weighted_v is power_sum_kw over it.",
+            "f8",
+        ),
+        column(
+            "voltage_time_vs",
+            "Sum of voltage times time: of zones all steps of these trains, of a train those with traction effort.",
+            "f8",
+        ),
+        column("counted_s", "Time of these steps; time_mean_v is voltage_time_vs over it.", "f8"),
         column("trains", "Trains that count.", "i4"),
         column("left_out", "Trains that were there too briefly.", "i4"),
         column("limit_v", "Lowest mean useful voltage of the class of the line; empty without one."),

@@ -28,12 +28,21 @@ class Means(NamedTuple):
         The means [V]; NaN where there is none.
     trains, left_out
         Trains that count, and trains that stayed too briefly.
+    power_w, current_a
+        Sums over the trains of the means of U |I| and of |I| while they are there [W], [A]; the current-weighted mean is their
+        quotient.
+    voltage_time_vs, counted_s
+        Sum of the voltages by their times [V s] and of these times [s]; the time mean is their quotient.
     """
 
     current_weighted_v: Array
     time_mean_v: Array
     trains: NDArray[np.int64]
     left_out: NDArray[np.int64]
+    power_w: Array
+    current_a: Array
+    voltage_time_vs: Array
+    counted_s: Array
 
 
 class UsefulVoltage:
@@ -91,8 +100,11 @@ class UsefulVoltage:
         time_s, _, charge, energy = self._table.sum(axis=1).T
         counts = _stays(time_s, shortest_stay_s)
         weighted = np.where(counts, _ratio(energy, charge), np.nan)
-        mean = np.where(counts, _ratio(self._tractive[:, 1], self._tractive[:, 0]), np.nan)
-        return Means(weighted, mean, counts.astype(np.int64), ((time_s > 0.0) & ~counts).astype(np.int64))
+        pulling_s, volt_seconds = np.where(counts, self._tractive.T, 0.0)
+        mean = _ratio(volt_seconds, pulling_s)
+        left_out = ((time_s > 0.0) & ~counts).astype(np.int64)
+        power, current = (np.where(counts, _ratio(total, time_s), 0.0) for total in (energy, charge))
+        return Means(weighted, mean, counts.astype(np.int64), left_out, power, current, volt_seconds, pulling_s)
 
     def of_zones(self, zones: Sequence[NDArray[np.integer[Any]]] | None = None, shortest_stay_s: float = 0.0) -> Means:
         """Return the means of zones, or of zones that are put together of those that were counted.
@@ -110,17 +122,17 @@ class UsefulVoltage:
         """
         alone = [np.array([k]) for k in range(self._shape[1] - 1)]
         found = [self._of_zone(np.asarray(parts, np.int64), shortest_stay_s) for parts in (alone if zones is None else zones)]
-        rows = np.array(found, float).reshape(len(found), 4)
-        return Means(rows[:, 0], rows[:, 1], rows[:, 2].astype(np.int64), rows[:, 3].astype(np.int64))
+        counted, left_out, power, current, volt_seconds, time_s = np.array(found, float).reshape(len(found), 6).T
+        weighted, mean = _ratio(power, current), _ratio(volt_seconds, time_s)
+        return Means(weighted, mean, counted.astype(np.int64), left_out.astype(np.int64), power, current, volt_seconds, time_s)
 
-    def _of_zone(self, parts: NDArray[np.int64], shortest_stay_s: float) -> tuple[float, float, int, int]:
+    def _of_zone(self, parts: NDArray[np.int64], shortest_stay_s: float) -> tuple[float, ...]:
+        """Return how many trains count and how many do not, and the four sums of `Means`."""
         time_s, voltage, charge, energy = self._table[:, parts].sum(axis=1).T
         counts = _stays(time_s, shortest_stay_s)
         shares = np.where(counts, _ratio(np.ones(time_s.shape), time_s, without=0.0), 0.0)
-        weighted, mean = _ratio(
-            np.array([(shares * energy).sum(), voltage[counts].sum()]), np.array([(shares * charge).sum(), time_s[counts].sum()])
-        )
-        return float(weighted), float(mean), int(counts.sum()), int(((time_s > 0.0) & ~counts).sum())
+        sums = (shares * energy).sum(), (shares * charge).sum(), voltage[counts].sum(), time_s[counts].sum()
+        return float(counts.sum()), float(((time_s > 0.0) & ~counts).sum()), *map(float, sums)
 
     @property
     def _table(self) -> Array:

@@ -1,4 +1,4 @@
-"""The sheets of ratings: utilisation of every device in the window that rules, and in all windows."""
+"""The sheet of ratings: how the devices of each kind stand, the duty classes, the sources; before a sheet for each kind."""
 
 from __future__ import annotations
 
@@ -6,38 +6,65 @@ from collections.abc import Iterator
 from typing import Any
 
 import pandas as pd
-from openpyxl.formatting.rule import CellIsRule, FormulaRule
+from openpyxl.utils import absolute_coordinate
 
+from tractionpower.model.base import format_time
 from tractionpower.reporting.facts.device_words import KINDS, kind_order
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
+from tractionpower.reporting.texts import mark, number, recorded, tr
+from tractionpower.reporting.workbook.common.acceptance import Accepted
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, PLAIN_FILL, RED_FILL, fill, put
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
-from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Column, Page
+from tractionpower.reporting.workbook.frame.formulas import Formula
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page
+from tractionpower.reporting.workbook.sizing import rated_devices, rating_windows
+from tractionpower.reporting.workbook.sizing.judging import (
+    HOLDS,
+    NO,
+    UNRATED,
+    YES,
+    banner,
+    colour_use,
+    colour_word,
+    known,
+    limit_line,
+    rounded,
+    sentence,
+    window_in_words,
+)
+from tractionpower.reporting.workbook.sizing.rated_cells import Judge, permitted_of, source_numbers, use_of
+from tractionpower.reporting.workbook.sizing.rated_devices import name_of
+from tractionpower.studies.ratings.words import KINDS as VERDICT_KINDS
 from tractionpower.studies.ratings.words import window_words
 
-USE, HOLDS = "utilisation [%]", "holds"
-UNRATED = "not rated"
+LIMIT = "utilisation_percent"
+PERMITTED = "permitted_utilisation"
+"""Name of the cell that says how much of a rating may be used."""
 
-_DEVICE = (
-    Column("device", widest=34),
-    Column("kind", widest=28),
-    Column("station", widest=22),
-    Column("track"),
-    Column("from [km]", "0.000"),
-    Column("to [km]", "0.000"),
-)
-_LOAD = (
-    Column("load: highest RMS in it [A]", "0"),
-    Column("permitted in it [A]", "0"),
-    Column(USE, "0.0"),
-    Column("left [A]", "0"),
-    Column(HOLDS, "beside"),
-    Column("that window begins", "time"),
-)
-_SOURCE = (Column("status of the rating", "beside", 24), Column("source", "0"))
+BANNER = "ratings_banner"
+"""Name of the cell that says it all in a sentence."""
 
-KNOWN = KNOWN_AS | {"derived": "derived from other inputs"}
+MOST = mark("highest utilisation [%]")
+
+_KINDS = (
+    Column("kind", widest=34),
+    Column("devices", "0"),
+    Column("with a rating", "0", key="rated"),
+    Column("beyond what is permitted", "0", key="beyond"),
+    Column(MOST, "0.0", key="most"),
+    Column("of which device", "beside", 34),
+    Column("in the window", "beside"),
+    Column("left there [A]", "0"),
+    Column(HOLDS, "beside", key="holds"),
+    Column("sheet", "beside", 24),
+)
+_DUTIES = (
+    Column("duty class"),
+    Column("window", "beside"),
+    Column("multiple of the rated current", "0.00", key="multiple"),
+    Column("meaning", widest=44),
+    Column("how it is known", widest=40),
+)
 
 
 def add(book: Book) -> None:
@@ -46,29 +73,32 @@ def add(book: Book) -> None:
     if rows.empty:
         return
     rows = in_order(rows)
+    ruling = one_for_each(rows)
     permitted = book.facts.scenario.sizing.utilisation_percent
     page = book.page("Ratings", "Ratings: what every device carries, and what it may")
-    ruling = one_for_each(rows)
-    sentence, style = ratings_in_words(ruling, permitted)
-    banner(page, sentence, style)
+    head = page.next
+    page.next += 1
+    cell = limit_line(page, tr("Permitted utilisation"), LIMIT, permitted, "%")
+    book.define(PERMITTED, page, cell.replace("$", ""))
     page.note(
-        "For every device the window that rules: that with the highest utilisation. The load is the highest sliding root mean"
-        " square of the current over the window; permitted is the rated current times the multiple that the duty class permits"
-        f" for it. A device holds up to {permitted:g} % of that; amber from {TIGHT_PERCENT:g} % of it on."
-        " A device without a rating shows its load over the whole run and is not judged. Ratings whose status is not 'verified'"
-        " are editable values: devices are checked against those values, which is no statement about a standard."
+        tr(
+            "The load of a device is the highest sliding root mean square of its current over a window; permitted is the rated"
+            " current times the multiple that its duty class permits for this window; the window with the highest utilisation"
+            " rules. Amber from {tight} % of the permitted utilisation on. The limit is edited on sheet Acceptance; verdicts"
+            " follow. A device without a rating shows its load over the whole run and is not judged. Ratings whose status is not"
+            " 'verified' are editable values: devices are checked against those values, which is no statement about a standard.",
+            tight=number(TIGHT_PERCENT),
+        )
     )
-    columns = (
-        *_DEVICE,
-        Column("rated current [A]", "0"),
-        Column("duty class", "beside", 16),
-        Column("window that rules", "beside"),
-    )
-    block = page.table((*columns, *_LOAD, *_SOURCE), _ruling_rows(ruling), frozen=True)
-    colour_use(block, USE, permitted)
-    colour_word(block, HOLDS)
+    sheets = rated_devices.add(book, ruling)
+    kinds = _write_kinds(page, ruling, sheets, cell)
+    end, page.next = page.next, head
+    _write_banner(page, ruling, permitted, (kinds, cell))
+    page.next = end
+    _duties(book, page)
     _sources(page, ruling)
-    _by_window(book, rows, permitted)
+    rating_windows.add(book, rows)
+    book.acceptance += _accepted(ruling, permitted)
 
 
 def in_order(rows: pd.DataFrame) -> pd.DataFrame:
@@ -89,99 +119,130 @@ def places_of(facts: Facts) -> dict[str, tuple[int, float]]:
 
 def one_for_each(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the ruling row of each device; of one without a rating that of the longest time."""
-    unrated = ~rows["device"].isin(rows.loc[rows["ruling"], "device"])
+    rated = rows["ruling"] & rows["utilisation_percent"].notna()
+    unrated = ~rows["device"].isin(rows.loc[rated, "device"])
     length = rows["window_s"].where(rows["window_s"] > 0.0, float("inf"))
     longest = length[unrated].groupby(rows.loc[unrated, "device"].astype(str)).idxmax()
-    return rows[rows["ruling"] | rows.index.isin(longest)].drop_duplicates("device")
+    return rows[rated | rows.index.isin(longest)].drop_duplicates("device")
 
 
 def ratings_in_words(ruling: pd.DataFrame, permitted: float) -> tuple[str, str]:
     """Return what the ratings say in a sentence, and the style that suits it."""
+    found, style = _said(ruling, permitted)
+    return str(found.value), style
+
+
+def _said(ruling: pd.DataFrame, permitted: float, cell: str = "") -> tuple[Formula, str]:
+    """Return the sentence as a formula on the table of kinds, and its style."""
     rated = ruling[ruling["utilisation_percent"].notna()]
-    bare = len(ruling) - len(rated)
-    without = f"; {bare} more have no rating and are not judged" if bare else ""
+    devices, bare = len(ruling), len(ruling) - len(rated)
     if rated.empty:
-        return f"None of {len(ruling)} devices has a rating", "doubt"
+        return sentence(tr("None of {devices} devices has a rating"), devices=(str(devices), devices)), "doubt"
     worst = rated.iloc[int(rated["utilisation_percent"].argmax())]
-    words = f"{worst['device']}, {worst['utilisation_percent']:.0f} % in {_window(worst['window_s'])}"
-    over = rated[rated["met"].astype(str) == "no"]
-    if len(over):
-        return f"{len(over)} of {len(rated)} rated devices beyond {permitted:g} %. Most: {words}{without}", "bad"
-    return f"All {len(rated)} rated devices within {permitted:g} %. Most: {words}{without}", "good" if not bare else "neutral"
+    beyond = int((rated["met"].astype(str) == "no").sum())
+    row = "MATCH(MAX({kinds_most}),{kinds_most},0)"
+    parts: dict[str, tuple[str, object]] = {
+        "rated": ("SUM({kinds_rated})", len(rated)),
+        "beyond": ("SUM({kinds_beyond})", beyond),
+        "permitted": (cell, number(permitted, 6)),
+        "device": (f"INDEX({{kinds_device}},{row})", worst["device"]),
+        "use": ("ROUND(MAX({kinds_most}),0)", rounded(worst["utilisation_percent"])),
+        "window": (f"INDEX({{kinds_window}},{row})", window_in_words(worst["window_s"])),
+    }
+    good = sentence(tr("All {rated} rated devices within {permitted} %"), **parts)
+    bad = sentence(tr("{beyond} of {rated} rated devices beyond {permitted} %"), **parts)
+    most = sentence(tr(". Most: {device}, {use} % in window: {window}"), **parts)
+    more = sentence(tr("; {bare} more have no rating and are not judged") if bare else "", bare=(str(bare), bare))
+    first = f"IF(SUM({{kinds_beyond}})=0,{good.text},{bad.text})"
+    text = "&".join(part for part in (first, most.text, more.text) if part)
+    value = f"{(bad if beyond else good).value}{most.value}{more.value}"
+    return Formula(text, value), "bad" if beyond else "neutral" if bare else "good"
 
 
-def _window(seconds: float) -> str:
-    return "the whole run" if seconds == 0.0 else window_words(seconds)
+def _write_banner(page: Page, ruling: pd.DataFrame, permitted: float, on: tuple[Block, str]) -> None:
+    """Write the verdict above the table of kinds; `on`: this table, and the address of the permitted utilisation."""
+    kinds, cell = on
+    found, style = _said(ruling, permitted, cell)
+    is_judged = bool(ruling["utilisation_percent"].notna().any())
+    banner(page, found, style, f"SUM({absolute_coordinate(kinds.cells('beyond'))})>0" if is_judged else "", BANNER)
 
 
-def banner(page: Page, text: str, style: str) -> None:
-    """Write a verdict in large letters across the page."""
-    put(page.sheet, page.next, 1, text, page.styles[f"big {style}"])
-    page.sheet.merge_cells(start_row=page.next, start_column=1, end_row=page.next, end_column=8)
-    page.sheet.row_dimensions[page.next].height = LINE_POINTS * 1.5 * (1 + len(text) // 85) + 8.0
-    page.next += 1
+def _write_kinds(page: Page, ruling: pd.DataFrame, sheets: dict[str, str], cell: str) -> Block:
+    """Write how each kind of devices stands, by formulas on the sheets of the kinds."""
+    page.section("Kinds of devices")
+    kinds = list(dict.fromkeys(ruling["kind"].astype(str)))
+    cells = (_kind_row(kind, ruling[ruling["kind"].astype(str) == kind], sheets[kind]) for kind in kinds)
+    block = page.table(_KINDS, cells)
+    colour_use(block, MOST, cell)
+    colour_word(block, HOLDS)
+    for name, heading in (("rated", "rated"), ("beyond", "beyond"), ("most", "most"), ("device", "of which device"),
+                          ("window", "in the window")):  # fmt: skip
+        page.book.define(f"kinds_{name}", page, block.cells(heading))
+    return block
 
 
-def _device(row: dict[Any, Any]) -> tuple[Any, ...]:
-    kind = KINDS.get(str(row["kind"]), str(row["kind"]))
-    return row["device"], kind, row["station"], row["track"], row["from_km"], row["to_km"]
+def _kind_row(kind: str, own: pd.DataFrame, sheet: str) -> tuple[Any, ...]:
+    use = own["utilisation_percent"]
+    name = name_of(kind)
+    rated, beyond = int(use.notna().sum()), int((own["met"].astype(str) == "no").sum())
+    first = (
+        tr(KINDS.get(kind, kind)), len(own), Formula(f"COUNT({{{name}_use}})", rated),
+        Formula(f'COUNTIF({{{name}_holds}},"{tr(NO)}")', beyond),
+    )  # fmt: skip
+    if not rated:
+        return *first, None, None, None, None, tr(UNRATED), sheet
+    worst = own.iloc[int(use.fillna(-1.0).argmax())]
+    at = f"MATCH({{most}},{{{name}_use}},0)"
+    load, permitted = float(worst["load_a"]), permitted_of(worst)
+    most = use_of(load, permitted)
+    holds = f'IF({{beyond}}>0,"{tr(NO)}","{tr(YES)}")'
+    return (
+        *first, Formula(f"MAX({{{name}_use}})", most), Formula(f"INDEX({{{name}_device}},{at})", worst["device"]),
+        Formula(f"INDEX({{{name}_window}},{at})", window_in_words(worst["window_s"])),
+        Formula(f"INDEX({{{name}_left}},{at})", permitted - load), Formula(holds, tr(NO if beyond else YES)), sheet,
+    )  # fmt: skip
 
 
-def _load(row: dict[Any, Any]) -> tuple[Any, ...]:
-    values = (row["load_a"], row["permitted_a"], row["utilisation_percent"], row["left_a"])
-    return *values, str(row["met"]) or UNRATED, row["from_s"]
-
-
-def _ruling_rows(ruling: pd.DataFrame) -> Iterator[tuple[Any, ...]]:
-    numbers = _numbers(ruling)
-    for row in ruling.to_dict("records"):
-        status = str(row["status"])
-        rated = (row["rated_current_a"], row["duty_class"], window_words(row["window_s"]))
-        yield *_device(row), *rated, *_load(row), KNOWN.get(status, status), numbers.get((status, str(row["source"])))
-
-
-def _numbers(ruling: pd.DataFrame) -> dict[tuple[str, str], int]:
-    """Return a number for each source of ratings, which are too long to stand in every row."""
-    pairs = zip(ruling["status"].astype(str), ruling["source"].astype(str), strict=True)
-    return {pair: number for number, pair in enumerate(dict.fromkeys(pair for pair in pairs if pair[0]), 1)}
+def _duties(book: Book, page: Page) -> None:
+    """Write the duty classes that are in use; loads are held against their multiples by formulas."""
+    judge = Judge.of(book)
+    rows = judge.duties
+    if not rows:
+        return
+    page.section("Duty classes")
+    cells = (
+        (row.duty_class, window_in_words(row.window_s), row.multiple, recorded(row.meaning),
+         f"{tr(KNOWN_AS.get(row.status, row.status))} ({recorded(row.source)})")
+        for row in rows
+    )  # fmt: skip
+    block = page.table(_DUTIES, cells)
+    for at, row in enumerate(rows, block.first):
+        cell = block.cell("multiple", at)
+        page.sheet[cell]._style = page.styles["editable 0.00"]
+        book.define(judge.duty_cell(row.duty_class, row.window_s), page, cell)
 
 
 def _sources(page: Page, ruling: pd.DataFrame) -> None:
-    """Write below the ratings where they come from."""
-    numbers = _numbers(ruling)
+    """Write below where the ratings come from."""
+    numbers = source_numbers(ruling)
     if not numbers:
         return
     page.section("Sources of the ratings")
-    for (status, source), number in numbers.items():
-        page.wrapped(f"{number}: {KNOWN.get(status, status)}. {source}")
+    for (status, source), count in numbers.items():
+        page.wrapped(f"{count}: {tr(KNOWN_AS.get(status, status))}. {recorded(source)}")
 
 
-def _by_window(book: Book, rows: pd.DataFrame, permitted: float) -> None:
-    page = book.page("Ratings by window", "Ratings by window: the load of every device in every window")
-    page.note("Sliding root mean square of the current. The window with the highest utilisation rules. 'Whole run': no window.")
-    columns = (*_DEVICE[:2], Column("window", "beside"), Column("window [s]", "0"), *_LOAD, Column("rules", "beside"))
-    cells = (
-        (row["device"], KINDS.get(str(row["kind"]), row["kind"]), window_words(row["window_s"]), row["window_s"], *_load(row),
-         "rules" if row["ruling"] else "")
-        for row in rows.to_dict("records")
-    )  # fmt: skip
-    block = page.table(columns, cells, frozen=True)
-    colour_use(block, USE, permitted)
-    colour_word(block, HOLDS)
-
-
-def colour_use(block: Block, heading: str, permitted: float) -> None:
-    """Let a utilisation show green, amber when little is left, red when it is beyond what is permitted."""
-    area = block.cells(heading)
-    first = area.split(":")[0]
-    tight = TIGHT_PERCENT / 100.0 * permitted
-    for test, colour in ((f">{permitted:g}", RED_FILL), (f">{tight:g}", AMBER_FILL), (">=0", GREEN_FILL)):
-        rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{first}{test})"], stopIfTrue=True, fill=fill(colour))
-        block.sheet.conditional_formatting.add(area, rule)
-
-
-def colour_word(block: Block, heading: str) -> None:
-    """Let yes and no show green and red, what is not judged grey."""
-    for word, colour in (("yes", GREEN_FILL), ("no", RED_FILL), (UNRATED, PLAIN_FILL)):
-        rule = CellIsRule(operator="equal", formula=[f'"{word}"'], fill=fill(colour))
-        block.sheet.conditional_formatting.add(block.cells(heading), rule)
+def _accepted(ruling: pd.DataFrame, permitted: float) -> Iterator[Accepted]:
+    """Yield for each kind of devices that with the highest utilisation."""
+    for kind, own in ruling.groupby(ruling["kind"].astype(str), sort=False):
+        use = own["utilisation_percent"]
+        if kind not in VERDICT_KINDS or not use.notna().any():
+            continue
+        worst = own.iloc[int(use.fillna(-1.0).argmax())]
+        most = use_of(float(worst["load_a"]), permitted_of(worst))
+        when = format_time(worst["from_s"]) if worst["window_s"] > 0.0 and known(worst["from_s"]) else ""
+        yield Accepted(
+            f"utilisation of {VERDICT_KINDS[str(kind)]}", LIMIT, permitted, "%", "at_most",
+            Formula(f"MAX({{{name_of(str(kind))}_use}})", most), f"{worst['device']}, {window_words(worst['window_s'])}", when,
+            str(worst["status"]), str(worst["source"]), "Ratings",
+        )  # fmt: skip

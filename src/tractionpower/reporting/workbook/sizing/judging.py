@@ -1,0 +1,158 @@
+"""How the sheets of ratings and of outages judge: limits in cells, verdicts as formulas, and colours that follow them."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+from openpyxl.formatting.rule import CellIsRule, FormulaRule
+from openpyxl.utils import absolute_coordinate
+
+from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
+from tractionpower.reporting.texts import mark, tr
+from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, PLAIN_FILL, RED_FILL, fill
+from tractionpower.reporting.workbook.frame.formulas import Formula
+from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Page
+from tractionpower.studies.ratings.words import window_words
+
+HOLDS, UNRATED = mark("holds"), mark("not rated")
+YES, NO = mark("yes"), mark("no")
+
+ROUNDING = "(1+1E-9)"
+"""By which a share may be beyond what is permitted, as in `studies.ratings.use`."""
+
+_PLACE = re.compile(r"\{(\w+)\}")
+_WIDE = 8
+"""Columns of a banner."""
+
+
+def limit_line(page: Page, label: str, limit: str, value: float, unit: str) -> str:
+    """Write a line with a limit, and return the address of its value for formulas and formats of the same sheet.
+
+    The value follows the sheet of acceptance, where all limits are edited; in a workbook without it, it is edited here.
+
+    Parameters
+    ----------
+    page
+        The sheet.
+    label
+        What is limited, in the language of the report.
+    limit
+        Name of the limit, as verdicts have it.
+    value, unit
+        Its value, and the unit of that.
+    """
+    row = page.next
+    page.put(row, 1, label, "label")
+    page.put(row, 2, Formula(f"{{limit_{limit}}}", value), "editable general")
+    page.put(row, 3, unit, "plain")
+    page.next += 1
+    return absolute_coordinate(f"B{row}")
+
+
+def window_in_words(seconds: float) -> str:
+    """Return the length of a window in words; 0 is the whole run."""
+    return window_words(seconds) if seconds > 0.0 else tr("whole run")
+
+
+def judged(text: str, word: str, recorded_word: str) -> Formula | str:
+    """Return a verdict as a formula, or the recorded word where rounded numbers would say other than the program did.
+
+    Parameters
+    ----------
+    text
+        The formula.
+    word, recorded_word
+        What it comes to, and what the program has recorded; English.
+    """
+    return Formula(text, tr(word)) if word == recorded_word else tr(recorded_word)
+
+
+def at_most(key: str, limit: str, slack: str = ROUNDING) -> str:
+    """Return a formula that says whether the value in a column is not above a limit."""
+    return f'IF({{{key}}}>{limit}*{slack},"{tr(NO)}","{tr(YES)}")'
+
+
+def sentence(text: str, **parts: tuple[str, object]) -> Formula:
+    """Return a sentence as a formula.
+
+    Parameters
+    ----------
+    text
+        The sentence in the language of the report, with its places open.
+    **parts
+        For each place the formula that fills it, and what that comes to.
+    """
+    pieces = _PLACE.split(text)
+    quoted = ['"' + piece.replace('"', '""') + '"' if k % 2 == 0 else parts[piece][0] for k, piece in enumerate(pieces)]
+    value = "".join(piece if k % 2 == 0 else str(parts[piece][1]) for k, piece in enumerate(pieces))
+    return Formula("&".join(piece for piece in quoted if piece != '""'), value)
+
+
+def rounded(value: float) -> int:
+    """Return a number as ROUND(...,0) of a workbook gives it.
+
+    >>> rounded(2.5), rounded(-0.4)
+    (3, 0)
+    """
+    return int(math.copysign(math.floor(abs(value) + 0.5), value))
+
+
+def banner(page: Page, text: Formula | str, style: str, bad: str = "", name: str = "") -> None:
+    """Write a verdict in large letters across the page.
+
+    Parameters
+    ----------
+    page
+        The sheet.
+    text
+        The verdict.
+    style
+        good, bad, doubt or neutral.
+    bad
+        A formula that is true where the verdict is bad: the colour follows it.
+    name
+        Name of the cell, for other sheets.
+    """
+    row = page.next
+    shown = page.put(row, 1, text, "big neutral" if bad else f"big {style}")
+    page.sheet.merge_cells(start_row=row, start_column=1, end_row=row, end_column=_WIDE)
+    page.sheet.row_dimensions[row].height = LINE_POINTS * 1.5 * (1 + len(str(shown)) // 85) + 8.0
+    if bad:
+        area = f"A{row}:{chr(ord('A') + _WIDE - 1)}{row}"
+        other = {"good": GREEN_FILL, "neutral": PLAIN_FILL}.get(style if style != "bad" else "good", AMBER_FILL)
+        for test, colour in ((bad, RED_FILL), (f"NOT({bad})", other)):
+            page.sheet.conditional_formatting.add(area, FormulaRule(formula=[test], stopIfTrue=True, fill=fill(colour)))
+    if name:
+        page.book.define(name, page, f"A{row}")
+    page.next += 1
+
+
+def colour_use(block: Block, heading: str, permitted: str) -> None:
+    """Let a utilisation show green, amber when little is left, red when it is beyond what is permitted, in the cell given."""
+    area = block.cells(heading)
+    first = area.split(":")[0]
+    tests = ((f">{permitted}*{ROUNDING}", RED_FILL), (f">{TIGHT_PERCENT / 100.0:g}*{permitted}", AMBER_FILL), (">=0", GREEN_FILL))
+    for test, colour in tests:
+        rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{first}{test})"], stopIfTrue=True, fill=fill(colour))
+        block.sheet.conditional_formatting.add(area, rule)
+
+
+def colour_red(block: Block, area: str, test: str) -> None:
+    """Let numbers that pass a test, such as ``<$B$4-0.1``, show red."""
+    first = area.split(":", maxsplit=1)[0]
+    rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{first}{test})"], fill=fill(RED_FILL))
+    block.sheet.conditional_formatting.add(area, rule)
+
+
+def colour_word(block: Block, heading: str) -> None:
+    """Let yes and no show green and red, what is not judged grey."""
+    for word, colour in ((YES, GREEN_FILL), (NO, RED_FILL), (UNRATED, PLAIN_FILL)):
+        rule = CellIsRule(operator="equal", formula=[f'"{tr(word)}"'], fill=fill(colour))
+        block.sheet.conditional_formatting.add(block.cells(heading), rule)
+
+
+def known(value: Any) -> bool:
+    """Return whether a value is a number that is known."""
+    return value is not None and not isinstance(value, str) and bool(math.isfinite(value))

@@ -1,0 +1,85 @@
+"""The sheets of windows: ratings that name several, and what every device carries over every window."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pandas as pd
+
+from tractionpower.reporting.facts.device_words import KINDS
+from tractionpower.reporting.texts import mark, tr
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.page import Column
+from tractionpower.reporting.workbook.sizing.judging import (
+    HOLDS,
+    colour_use,
+    colour_word,
+    limit_line,
+    window_in_words,
+)
+from tractionpower.reporting.workbook.sizing.rated_cells import LOADS, USE, Judge, keyed
+
+RULES = mark("rules")
+
+_COLUMNS = (
+    Column("device", widest=34, key="device"),
+    Column("kind", widest=28, key="kind"),
+    Column("duty class", "beside", 12, key="duty"),
+    Column("window", "beside", key="window"),
+    *LOADS,
+    Column(RULES, "beside", key="rules"),
+)
+
+
+def add(book: Book, rows: pd.DataFrame) -> None:
+    """Add the sheets."""
+    _rated(book, rows)
+    _loads(book, rows)
+
+
+def _rated(book: Book, rows: pd.DataFrame) -> None:
+    """Add a row for each window of the ratings that name more than one."""
+    rated = rows[rows["utilisation_percent"].notna()]
+    several = rated[rated.groupby("device", observed=True)["window_s"].transform("size") > 1]
+    if several.empty:
+        return
+    page = book.page("Ratings by window", "Ratings by window: devices that are rated for several windows")
+    judge = Judge.of(book)
+    limit = limit_line(page, tr("permitted utilisation"), "utilisation_percent", judge.permitted, "%")
+    page.note("The window with the highest utilisation rules. A window longer than the run is held against the whole of it.")
+    cells = (_device(row) | judge.cells(row, limit) for row in several.to_dict("records"))
+    block = page.table(_COLUMNS, (keyed(_COLUMNS, each) for each in cells), frozen=True)
+    colour_use(block, USE, limit)
+    colour_word(block, HOLDS)
+
+
+def _device(row: dict[Any, Any]) -> dict[str, Any]:
+    kind = str(row["kind"])
+    return {
+        "device": row["device"], "kind": tr(KINDS.get(kind, kind)), "duty": row["duty_class"],
+        "window": window_in_words(row["window_s"]), "rules": tr(RULES) if row["ruling"] else "",
+    }  # fmt: skip
+
+
+def _loads(book: Book, rows: pd.DataFrame) -> None:
+    """Add a row for each device and a column for each window."""
+    page = book.page("Loads by window", "Loads by window: the highest root mean square of the current over every window")
+    page.note(
+        "Highest sliding root mean square of the current of every device [A]; windows that the run is too short for have no value."
+    )
+    windows = sorted(rows["window_s"].unique(), key=lambda window: (window == 0.0, window))
+    columns = (
+        Column("device", widest=34),
+        Column("kind", widest=28),
+        *(Column(tr("{window} [A]", window=window_in_words(window)), "0") for window in windows),
+    )
+    page.table(columns, _matrix(rows, windows), frozen=True)
+
+
+def _matrix(rows: pd.DataFrame, windows: list[float]) -> Iterator[tuple[Any, ...]]:
+    for device, own in rows.groupby(rows["device"].astype(str), sort=False):
+        kind = str(own["kind"].iloc[0])
+        loads = dict(zip(own["window_s"], own["load_a"], strict=True))
+        yield device, tr(KINDS.get(kind, kind)), *(loads.get(window) for window in windows)
+
