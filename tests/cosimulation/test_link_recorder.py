@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from small_studies import load, make_scenario, run_in_memory
+from small_studies import load, make_scenario, run_in_memory, station
 
 from tractionpower.model.base import parse_time
 
@@ -96,11 +96,22 @@ def test_the_share_of_the_time_closed(results):
 def test_a_run_tells_settings_and_normal_states(results):
     told = {each["place"]: each for each in results.run["links"]}
     assert told[f"feeder {TRIPS}"] | {"km": 0.0} == {
-        "place": f"feeder {TRIPS}", "kind": "feeder", "track": "1", "km": 0.0, "normal_state": "closed", "trip_current_a": 1000.0,
+        "place": f"feeder {TRIPS}", "kind": "feeder", "track": "1", "km": 0.0, "normal_state": "closed", "resistance_ohm": 0.0,
+        "trip_current_a": 1000.0,
     }  # fmt: skip
     assert (told[f"feeder {OPEN}"]["normal_state"], told[f"feeder {OPEN}"]["trip_current_a"]) == ("open", None)
     assert told[f"switch {TIES}"]["normal_state"] == "open"
     assert told["feeder C 1 low_km"]["kind"] == "cabin"
+
+
+def test_the_heat_of_a_feeder_is_its_resistance_times_the_squares():
+    depot = load("depot", 3.0)
+    stations = [station("A", 0.0, feeder_resistance_ohm=0.02), station("B", 20.0)]
+    found, *_ = run_in_memory(make_scenario(depot, substations=stations, clock={"end": 10.0, "step_s": 0.5}))
+    rows = found.table("feeders").query("substation == 'A' and track == '1' and side == 'high_km'")
+    heat = figures(found, "feeder A 1 high_km")["feeder_heat_kwh"]["value"]
+    assert heat == pytest.approx(0.02 * (rows["current_a"].astype(float) ** 2).sum() * 0.5 / 3.6e6, rel=1e-6)
+    assert "feeder_heat_kwh" not in figures(found, "feeder B 1 low_km")
 
 
 def test_an_open_feeder_has_no_negative_zero(results):

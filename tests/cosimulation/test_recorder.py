@@ -65,6 +65,34 @@ def test_figures_of_a_substation(busy, name):
     assert busy.figure("energy_kwh", place) == pytest.approx(power.sum() / 3600.0, rel=1e-5)
 
 
+@pytest.mark.parametrize("name", ["A", "M", "B"])
+def test_what_the_plant_of_a_substation_keeps(busy, name):
+    place, volts = f"substation {name}", series(busy.results, name, "voltage_v")
+    assert busy.figure("lowest_busbar_voltage_v", place) == pytest.approx(volts.min(), rel=1e-6)
+    assert parse_time(busy.noted("lowest_busbar_voltage_v", place)["time"]) == volts.idxmin()
+    assert busy.figure("mean_busbar_voltage_v", place) == pytest.approx(volts.mean(), rel=1e-6)
+    regulation = series(busy.results, name, "regulation_kw").sum() / 3600.0
+    assert busy.figure("plant_regulation_kwh", place) == pytest.approx(regulation, rel=1e-5, abs=1e-6)
+
+
+def test_the_substations_together_regulate_what_the_ledger_says(busy):
+    parts = [busy.figure("plant_regulation_kwh", f"substation {name}") for name in "AMB"]
+    assert sum(parts) == pytest.approx(busy.figure("regulation_energy_kwh"), rel=1e-9)
+
+
+def test_heat_and_energy_fed_back_of_a_plant():
+    plant = {"conducts": "both", "dissipative_resistance_ohm": 0.03}
+    stations = [{"id": "A", "km": 0.0, "no_load_voltage_v": 3500.0, "internal_resistance_ohm": 0.12, **plant}]
+    stations.append({"id": "B", "km": 20.0, "no_load_voltage_v": 3600.0, "internal_resistance_ohm": 0.12})
+    results, *_ = run_in_memory(make_scenario(load("late", 3.0, **{"from": 5.0}), substations=stations))
+    figures = {each["name"]: each["value"] for each in results.key_figures if each["place"] == "substation A"}
+    power, current = series(results, "A", "power_kw"), series(results, "A", "current_a")
+    assert power.min() < -1.0 < 1.0 < power.max()
+    assert figures["energy_fed_back_kwh"] == pytest.approx(-power.clip(upper=0.0).sum() / 3600.0, rel=1e-5)
+    assert figures["plant_heat_kwh"] == pytest.approx(0.03 * (current**2).sum() / 3.6e6, rel=1e-5)
+    assert not [each for each in results.key_figures if "fed_back" in each["name"] and each["place"] == "substation B"]
+
+
 def test_what_substations_feed_is_what_trains_loads_and_lines_take(busy):
     ledger = busy.results.run["ledgers"]["electric"]
     fed = sum(busy.figure("energy_kwh", f"substation {name}") for name in "AMB")

@@ -38,6 +38,42 @@ def test_energies_are_sums_of_the_rows(busy, name):
         assert busy.figure(figure, place) == pytest.approx(kwh(power), rel=1e-6, abs=1e-5), figure
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_mean_useful_voltages_are_quotients_of_the_sums(busy, name):
+    rows, place = busy.rows(name), f"train {name}"
+    volts, amps = rows["voltage_v"].astype(float), rows["current_a"].astype(float).abs()
+    energy, charge = busy.figure("useful_energy_kwh", place), busy.figure("useful_charge_ah", place)
+    assert energy == pytest.approx((volts * amps).sum() / 3.6e6, rel=1e-5)
+    assert charge == pytest.approx(amps.sum() / 3600.0, rel=1e-5)
+    assert 1000.0 * energy / charge == pytest.approx(busy.figure("mean_useful_voltage_current_weighted_v", place), rel=1e-12)
+    volt_seconds, seconds = (
+        busy.figure(f"{what}_of_useful_steps_{unit}", place) for what, unit in (("voltage", "vs"), ("time", "s"))
+    )
+    assert seconds == (rows["tractive_force_kn"] > 0.0).sum()
+    assert volt_seconds / seconds == pytest.approx(busy.figure("mean_useful_voltage_time_mean_v", place), rel=1e-12)
+
+
+@pytest.mark.parametrize("zone", ["A–M", "M–B"])
+def test_mean_useful_voltages_of_zones_are_quotients_of_the_sums(busy, zone):
+    place = f"zone {zone}"
+    quotient = 1000.0 * busy.figure("useful_power_kw", place) / busy.figure("useful_current_a", place)
+    assert quotient == pytest.approx(busy.figure("mean_useful_voltage_current_weighted_v", place), rel=1e-12)
+    quotient = busy.figure("voltage_of_useful_steps_vs", place) / busy.figure("time_of_useful_steps_s", place)
+    assert quotient == pytest.approx(busy.figure("mean_useful_voltage_time_mean_v", place), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_voltages_of_a_train_and_where_the_lowest_is(busy, name):
+    rows, place = busy.rows(name), f"train {name}"
+    highest = busy.noted("highest_pantograph_voltage_v", place)
+    assert highest["value"] == pytest.approx(rows["voltage_v"].max(), rel=1e-6)
+    assert busy.figure("mean_pantograph_voltage_v", place) == pytest.approx(rows["voltage_v"].astype(float).mean(), rel=1e-6)
+    worst = rows.loc[rows["voltage_v"].idxmin()]
+    told = next(each for each in busy.results.run["trains"] if each["train"] == name)
+    assert told["lowest_voltage_track"] == worst["track"]
+    assert told["lowest_voltage_km"] == pytest.approx(worst["position_km"], abs=1e-9)
+
+
 def test_there_is_something_of_every_energy(busy):
     for name in ("energy_returned_kwh", "refused_energy_kwh", "drive_loss_kwh", "auxiliary_energy_kwh"):
         assert busy.figure(name, "train E2") > 1.0

@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.results.extremes import Array, Extremes
-from tractionpower.results.key_figures import KeyFigure, link_figures
+from tractionpower.results.key_figures import KeyFigure, link_figures, link_heat
 from tractionpower.results.tables import feeders_table, switches_table
 from tractionpower.supply.compile import SupplyTables
 from tractionpower.supply.protection import protections
@@ -36,6 +36,7 @@ class LinkRecorder:
         self.cabins = [k for k, kind in enumerate(kinds) if kind == "cabin"]
         self.switches = [k for k, kind in enumerate(kinds) if kind == "switch"]
         self.magnitude_a = Extremes(len(self.links))
+        self._step_s = scenario.clock.step_s
         self.closed_steps = np.zeros(len(self.links), np.int64)
         self.trips: Counter[str] = Counter()
         self._protected = protections(scenario.supply, self.links)
@@ -64,6 +65,7 @@ class LinkRecorder:
         for k, link in enumerate(self.links):
             trips = self.trips[link.id] if link.kind in ("feeder", "cabin") else None
             yield from link_figures(_place(link), self.magnitude_a, k, int(self.closed_steps[k]), trips)
+            yield from link_heat(_place(link), float(self.magnitude_a.squares[k]), link.ohm, self._step_s)
 
     def summary(self) -> list[dict[str, Any]]:
         """Return what ``run.json`` says of the links: what they are, their normal states and trips."""
@@ -71,6 +73,7 @@ class LinkRecorder:
             {
                 "place": _place(link), "kind": link.kind, "track": link.track, "km": link.km,
                 "normal_state": "closed" if link.closed else "open",
+                "resistance_ohm": link.ohm,
                 "trip_current_a": self._protected[link.id].trip_current_a if link.id in self._protected else None,
             }
             for link in self.links

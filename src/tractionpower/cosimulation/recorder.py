@@ -22,9 +22,11 @@ from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.results.columns import TABLES
 from tractionpower.results.extremes import Array, Extremes
 from tractionpower.results.key_figures import (
+    PlantSums,
     SubstationWindows,
     ledger_figures,
     load_figures,
+    plant_figures,
     substation_figures,
     window_figures,
 )
@@ -57,6 +59,7 @@ class Recorder:
         self.wanted = set(TABLES if wanted is None else wanted)
         self.substation_a = Extremes(len(supply.substations))
         self.substation_w = Extremes(len(supply.substations))
+        self.plants = PlantSums.of(len(supply.substations))
         self.load_v, self.load_w = Extremes(len(supply.loads)), Extremes(len(supply.loads))
         self.links = LinkRecorder(scenario, supply)
         self.section_v = Extremes(len(supply.sections))
@@ -105,6 +108,8 @@ class Recorder:
         self.substation_a.add(t, rows.source_a)
         power = np.nan_to_num(rows.source_v) * rows.source_a
         self.substation_w.add(t, power)
+        source = self._no_load_v(), dissipative_resistances(self.supply.substations)
+        self.plants.add(t, source, rows.source_v, rows.source_a)
         self.windows.add(t, rows.source_a, power)
         self.links.add(t, rows.link_a, self.supply.links)
         self.load_v.add(t, np.where(self._fed, rows.load_v, np.nan))
@@ -250,6 +255,7 @@ class Recorder:
         figures = [
             *self.voltages.figures(),
             *substation_figures(substations, self.substation_a, self.substation_w, self.step_s),
+            *plant_figures(substations, self.plants, [each.conducts == "both" for each in self.supply.substations], self.step_s),
             *window_figures(substations, self.windows),
             *self.links.figures(),
             *load_figures([load.id for load in self.supply.loads], self.load_w, self.step_s),

@@ -30,7 +30,14 @@ from tractionpower.movement.ledgers import (
 from tractionpower.movement.turns import together
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.spells import TrainSpells
-from tractionpower.results.trains import CallRow, SupplySummary, TrainSummary, supply_figures, train_figures, useful_figures
+from tractionpower.results.trains import (
+    CallRow,
+    SupplySummary,
+    TrainSummary,
+    supply_figures,
+    train_figures,
+    useful_figures,
+)
 from tractionpower.results.useful_voltage import Means, UsefulVoltage
 from tractionpower.results.windows import TrainWindows
 
@@ -260,9 +267,17 @@ class TrainRecorder:
                 "finished_s": None if np.isnan(mover["finished_s"]) else float(mover["finished_s"]),
                 "distance_m": float(mover["s_m"]),
                 "overdue_s": overdue_by(call_rows(self.names[k], self._calls(k), planned.route_m), now_s),
+                **self._worst_place(k),
             }
             for k, (planned, mover) in enumerate(zip(self.movement.runs, self._state.trains.movers, strict=True))
         ]
+
+    def _worst_place(self, k: int) -> dict[str, Any]:
+        """Return where train `k` has its lowest voltage."""
+        if not self.seen[k]:
+            return {"lowest_voltage_track": None, "lowest_voltage_km": None}
+        track, km = self.places.name(k, float(self.lowest_v.at_m[k]))
+        return {"lowest_voltage_track": track, "lowest_voltage_km": float(km)}
 
     def where(self, extreme: Extreme, k: int) -> str:
         """Return in words where an extreme of train `k` was."""
@@ -290,16 +305,18 @@ class TrainRecorder:
             )  # fmt: skip
             late = late_at_end(call_rows(self.names[k], calls, planned.route_m), end_s)
             yield from supply_figures(self._supply(k, sums, late, useful))
-        for name, weighted, mean in zip(self.places.zones, zones.current_weighted_v, zones.time_mean_v, strict=True):
-            yield from useful_figures(f"zone {name}", float(weighted), float(mean))
+        for k, name in enumerate(self.places.zones):
+            yield from useful_figures(f"zone {name}", zones, k)
 
     def _supply(self, k: int, sums: dict[str, float], late_s: float, useful: Means) -> SupplySummary:
         window = self.ten_seconds
+        energy_j, charge_c, mean_v = self.useful.energies()
         return SupplySummary(
             self.names[k], sums["auxiliaries"], sums["drive_loss"], sums["starting_resistors"], sums["refused"],
             float(self.lowest_v.value[k]), float(self.lowest_v.time_s[k]),
             float(window.best[0, k]), float(window.best_from_s[0, k]),
-            float(useful.current_weighted_v[k]), float(useful.time_mean_v[k]), late_s,
+            float(self.highest_v.value[k]), float(self.highest_v.time_s[k]), float(mean_v[k]),
+            useful, k, float(energy_j[k]), float(charge_c[k]), late_s,
         )  # fmt: skip
 
 

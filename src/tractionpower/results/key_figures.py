@@ -75,6 +75,59 @@ def substation_figures(names: Sequence[str], current: Extremes, power: Extremes,
 
 
 @dataclass(frozen=True, slots=True)
+class PlantSums:
+    """What the plant of all substations gives and keeps, besides current and power at the busbars.
+
+    Attributes
+    ----------
+    voltage
+        Busbar voltages [V].
+    regulation, heat, fed_back
+        (E - U) I; R I2 of the resistances that are heat, where they are given; U I where it is negative [W].
+    """
+
+    voltage: Extremes
+    regulation: Extremes
+    heat: Extremes
+    fed_back: Extremes
+
+    @classmethod
+    def of(cls, substations: int) -> PlantSums:
+        """Return sums of which nothing is known yet."""
+        return cls(*(Extremes(substations) for _ in range(4)))
+
+    def add(self, time_s: Array, source: tuple[Array, Array], voltage_v: Array, current_a: Array) -> None:
+        """Add rows: start of the steps [s]; voltages [V] and currents [A] of shape (rows, substations).
+
+        `source` are no-load voltages [V] and dissipative resistances [ohm] in these steps, NaN where there is none.
+        """
+        no_load_v, dissipative_ohm = source
+        self.voltage.add(time_s, voltage_v)
+        self.heat.add(time_s, dissipative_ohm * current_a**2)
+        self.regulation.add(time_s, np.nan_to_num((no_load_v - voltage_v) * current_a))
+        self.fed_back.add(time_s, np.minimum(np.nan_to_num(voltage_v) * current_a, 0.0))
+
+
+def plant_figures(names: Sequence[str], sums: PlantSums, two_way: Sequence[bool], step_s: float) -> Iterator[KeyFigure]:
+    """Yield energies and busbar voltages of all substations; those `two_way` can feed back."""
+    to_kwh = step_s / 3.6e6
+    for k, name in enumerate(names):
+        place = f"substation {name}"
+        if np.isfinite(sums.voltage.lowest[k]):
+            when = format_time(sums.voltage.lowest_s[k])
+            yield KeyFigure("lowest_busbar_voltage_v", float(sums.voltage.lowest[k]), place, when, "lowest mean of a step")
+            yield KeyFigure("mean_busbar_voltage_v", float(sums.voltage.mean[k]), place, "", "mean of the steps with a voltage")
+        regulation_kwh = float(sums.regulation.total[k]) * to_kwh
+        yield KeyFigure("plant_regulation_kwh", regulation_kwh, place, "", "sum of (E - U) I over the steps")
+        if sums.heat.counts[k]:
+            definition = "dissipative resistance times the square of the current, sum over the steps; a part of the regulation"
+            yield KeyFigure("plant_heat_kwh", float(sums.heat.total[k]) * to_kwh, place, "", definition)
+        if two_way[k]:
+            definition = "sum of -U I over the steps in which the busbar feeds back"
+            yield KeyFigure("energy_fed_back_kwh", -float(sums.fed_back.total[k]) * to_kwh, place, "", definition)
+
+
+@dataclass(frozen=True, slots=True)
 class SubstationWindows:
     """Sliding windows of all substations.
 
@@ -120,6 +173,13 @@ def window_figures(names: Sequence[str], windows: SubstationWindows) -> Iterator
         if np.isfinite(demand.best[k]):
             when, definition = format_time(demand.best_from_s[k]), "highest mean over a quarter of an hour by the clock, U I"
             yield KeyFigure("highest_clock_15_min_power_kw", float(demand.best[k]) / 1000.0, place, when, definition)
+
+
+def link_heat(place: str, squares: float, ohm: float, step_s: float) -> Iterator[KeyFigure]:
+    """Yield the heat in a feeder from the sum of the squares of its current [A2]; nothing without a resistance [ohm]."""
+    if ohm > 0.0:
+        definition = "resistance times the square of the current, sum over the steps"
+        yield KeyFigure("feeder_heat_kwh", ohm * squares * step_s / 3.6e6, place, "", definition)
 
 
 def link_figures(place: str, magnitude: Extremes, k: int, closed_steps: int, trips: int | None) -> Iterator[KeyFigure]:

@@ -14,6 +14,7 @@ from tractionpower.kernels.train_tables import LIMITED_BY, PHASES
 from tractionpower.model.base import format_time
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.tables import make_table
+from tractionpower.results.useful_voltage import Means
 
 Array = NDArray[Any]
 Coded = tuple[Any, Sequence[str]]
@@ -21,6 +22,7 @@ Coded = tuple[Any, Sequence[str]]
 
 KMH_PER_MPS = 3.6
 J_PER_KWH = 3.6e6
+S_PER_H = 3600.0
 
 _KILO = {
     "tractive_force_kn": "traction_n",
@@ -207,8 +209,14 @@ class SupplySummary:
         Lowest mean voltage of a step [V], and when [s after midnight].
     ten_seconds_v, ten_seconds_s
         Lowest mean over 10 s [V] and when it begins [s]; NaN where the train was not so long on the line.
-    current_weighted_v, time_mean_v
-        Mean useful voltage by both definitions [V]; NaN without current, without traction.
+    highest_v, highest_s
+        Highest mean voltage of a step [V], and when [s after midnight].
+    mean_v
+        Mean voltage of all steps with a voltage [V].
+    useful, number
+        Mean useful voltages of all trains, and the number of this one among them.
+    useful_j, useful_c
+        Sums U |I| dt [J] and |I| dt [C].
     late_s
         Computed less planned time at its last call with a planned time [s]; NaN without one.
     """
@@ -222,8 +230,13 @@ class SupplySummary:
     lowest_s: float
     ten_seconds_v: float
     ten_seconds_s: float
-    current_weighted_v: float
-    time_mean_v: float
+    highest_v: float
+    highest_s: float
+    mean_v: float
+    useful: Means
+    number: int
+    useful_j: float
+    useful_c: float
     late_s: float
 
 
@@ -243,26 +256,40 @@ def supply_figures(summary: SupplySummary) -> Iterator[KeyFigure]:
     if np.isfinite(summary.ten_seconds_v):
         when = format_time(summary.ten_seconds_s)
         yield KeyFigure("lowest_10_s_mean_voltage_v", summary.ten_seconds_v, place, when, "lowest sliding mean over 10 s")
-    yield from useful_figures(place, summary.current_weighted_v, summary.time_mean_v)
+    when = format_time(summary.highest_s)
+    yield KeyFigure("highest_pantograph_voltage_v", summary.highest_v, place, when, "highest mean of a step at the pantograph")
+    yield KeyFigure("mean_pantograph_voltage_v", summary.mean_v, place, "", "mean of all steps with a voltage, at the pantograph")
+    yield from useful_figures(place, summary.useful, summary.number)
+    if summary.useful_c > 0.0:
+        definition = "sum U |I| dt; over useful_charge_ah: the mean useful voltage, current-weighted"
+        yield KeyFigure("useful_energy_kwh", summary.useful_j / J_PER_KWH, place, "", definition)
+        yield KeyFigure("useful_charge_ah", summary.useful_c / S_PER_H, place, "", "sum |I| dt")
     if np.isfinite(summary.late_s):
         definition = "computed less planned time at the last timed call reached; if another is overdue, the time since it"
         yield KeyFigure("late_at_end_s", summary.late_s, place, "", definition)
 
 
-def useful_figures(place: str, current_weighted_v: float, time_mean_v: float) -> Iterator[KeyFigure]:
-    """Yield the mean useful voltage of a train or zone by both definitions; what is NaN is left out."""
+def useful_figures(place: str, means: Means, k: int) -> Iterator[KeyFigure]:
+    """Yield the mean useful voltage of train or zone `k` by both definitions, and what they are quotients of, as far as known."""
     is_train = place.startswith("train ")
+    steps = "steps with traction effort" if is_train else "all trains and steps"
     definitions = {
         "mean_useful_voltage_current_weighted_v": (
-            current_weighted_v,
+            means.current_weighted_v[k],
             "mean useful voltage, current-weighted: sum U |I| dt / sum |I| dt"
             + ("" if is_train else ", every train divided by its time in the zone"),
         ),
-        "mean_useful_voltage_time_mean_v": (
-            time_mean_v,
-            "mean useful voltage, time mean: " + ("over steps with traction effort" if is_train else "over all trains and steps"),
-        ),
+        "mean_useful_voltage_time_mean_v": (means.time_mean_v[k], f"mean useful voltage, time mean: over {steps}"),
     }
     for name, (volts, definition) in definitions.items():
         if np.isfinite(volts):
-            yield KeyFigure(name, volts, place, "", definition)
+            yield KeyFigure(name, float(volts), place, "", definition)
+    if not is_train and means.current_a[k] > 0.0:
+        definition = "sum over trains of their mean U |I| in the zone; over useful_current_a: the mean useful voltage"
+        yield KeyFigure("useful_power_kw", float(means.power_w[k]) / 1000.0, place, "", definition)
+        definition = "sum over trains of their mean |I| in the zone"
+        yield KeyFigure("useful_current_a", float(means.current_a[k]), place, "", definition)
+    if means.counted_s[k] > 0.0:
+        definition = f"sum U dt over {steps}; over time_of_useful_steps_s: the mean useful voltage, time mean"
+        yield KeyFigure("voltage_of_useful_steps_vs", float(means.voltage_time_vs[k]), place, "", definition)
+        yield KeyFigure("time_of_useful_steps_s", float(means.counted_s[k]), place, "", f"time of {steps}")
