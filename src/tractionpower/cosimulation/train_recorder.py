@@ -275,9 +275,9 @@ class TrainRecorder:
     def _worst_place(self, k: int) -> dict[str, Any]:
         """Return where train `k` has its lowest voltage."""
         if not self.seen[k]:
-            return {"lowest_voltage_track": None, "lowest_voltage_km": None}
+            return {"lowest_voltage_track": None, "lowest_voltage_km": None, "lowest_voltage_s": None}
         track, km = self.places.name(k, float(self.lowest_v.at_m[k]))
-        return {"lowest_voltage_track": track, "lowest_voltage_km": float(km)}
+        return {"lowest_voltage_track": track, "lowest_voltage_km": float(km), "lowest_voltage_s": float(self.lowest_v.time_s[k])}
 
     def where(self, extreme: Extreme, k: int) -> str:
         """Return in words where an extreme of train `k` was."""

@@ -134,6 +134,11 @@ class UsefulVoltage:
         sums = (shares * energy).sum(), (shares * charge).sum(), voltage[counts].sum(), time_s[counts].sum()
         return float(counts.sum()), float(((time_s > 0.0) & ~counts).sum()), *map(float, sums)
 
+    def energies(self) -> tuple[Array, Array, Array]:
+        """Return of all trains int U |I| dt [J], int |I| dt [C], and the mean voltage of all their steps [V]."""
+        time_s, volt_seconds, charge, energy = self._table.sum(axis=1).T
+        return energy, charge, _ratio(volt_seconds, time_s)
+
     @property
     def _table(self) -> Array:
         """The sums by train, zone and kind."""

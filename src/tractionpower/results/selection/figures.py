@@ -13,8 +13,10 @@ from tractionpower.model.base import format_time
 from tractionpower.results.extremes import Extremes
 from tractionpower.results.key_figures import (
     KeyFigure,
+    PlantSums,
     SubstationWindows,
     load_figures,
+    plant_figures,
     substation_figures,
     voltage_figure,
     window_figures,
@@ -24,6 +26,9 @@ from tractionpower.results.useful_voltage import Means, UsefulVoltage
 from tractionpower.results.windows import SlidingWindows
 
 Array = NDArray[np.float64]
+
+Useful = tuple[Means, Array, Array, Array]
+"""Mean useful voltages of all trains, and what `UsefulVoltage.energies` tells of them."""
 
 STANDS = ("dwelling", "waiting")
 """Phases in which a train stands at a stop."""
@@ -37,7 +42,14 @@ def substations_of(rows: pd.DataFrame, step_s: float) -> Iterator[KeyFigure]:
     current.add(time_s, current_a)
     power.add(time_s, power_w)
     windows.add(time_s, current_a, power_w)
+    plants = PlantSums.of(len(names))
+    of_plants = (("regulation_kw", plants.regulation), ("loss_kw", plants.heat))
+    for column, sums in of_plants:
+        sums.add(time_s, by_device(rows, ("substation",), column)[2] * 1000.0)
+    plants.voltage.add(time_s, by_device(rows, ("substation",), "voltage_v")[2])
+    plants.fed_back.add(time_s, np.minimum(power_w, 0.0))
     yield from substation_figures(names, current, power, step_s)
+    yield from plant_figures(names, plants, [bool((power_w[:, k] < -1.0).any()) for k in range(len(names))], step_s)
     yield from window_figures(names, windows)
 
 
@@ -72,7 +84,8 @@ def trains_of(
     train = rows["train"].astype("category").cat.remove_unused_categories()
     names, code = [str(name) for name in train.cat.categories], train.cat.codes.to_numpy().astype(np.int64)
     late = _late(calls)
-    useful = _useful(rows, code, len(names), step_s)
+    sums = _useful(rows, code, len(names), step_s)
+    useful = sums.of_trains(), *sums.energies()
     order = np.argsort(code, kind="stable")
     ends = np.searchsorted(code[order], np.arange(len(names) + 1))
     for k, name in enumerate(names):
@@ -129,14 +142,15 @@ def _minus(value: float | None) -> float | None:
     return None if value is None else -value
 
 
-def _supply(name: str, rows: pd.DataFrame, step_s: float, late_s: float, useful: Means, k: int) -> SupplySummary:
+def _supply(name: str, rows: pd.DataFrame, step_s: float, late_s: float, useful: Useful, k: int) -> SupplySummary:
     columns = ("auxiliary_power_kw", "drive_loss_kw", "starting_resistor_kw", "refused_regeneration_kw")
     auxiliary_j, drive_j, starting_j, refused_j = (
         float(rows[column].to_numpy(float).sum()) * 1000.0 * step_s for column in columns
     )
     time_s, volts = rows["time_s"].to_numpy(float), rows["voltage_v"].to_numpy(float)
     known = np.where(np.isnan(volts), np.inf, volts)
-    least = int(known.argmin())
+    least, most = int(known.argmin()), int(np.nan_to_num(volts).argmax())
+    means, energy_j, charge_c, mean_v = useful
     ten = SlidingWindows(1, step_s, (10.0,), "lowest")
     for piece in np.split(np.arange(len(rows)), np.flatnonzero(np.diff(time_s) > 1.5 * step_s) + 1):
         ten.add(time_s[piece], np.nan_to_num(volts[piece])[:, np.newaxis])
@@ -144,16 +158,17 @@ def _supply(name: str, rows: pd.DataFrame, step_s: float, late_s: float, useful:
     return SupplySummary(
         name, auxiliary_j, drive_j, starting_j, refused_j, float(known[least]), float(time_s[least]),
         float(ten.best[0, 0]) if found else np.nan, float(ten.best_from_s[0, 0]) if found else np.nan,
-        float(useful.current_weighted_v[k]), float(useful.time_mean_v[k]), late_s,
+        float(volts[most]), float(time_s[most]), float(mean_v[k]),
+        means, k, float(energy_j[k]), float(charge_c[k]), late_s,
     )  # fmt: skip
 
 
-def _useful(rows: pd.DataFrame, train: NDArray[np.integer[Any]], trains: int, step_s: float) -> Means:
+def _useful(rows: pd.DataFrame, train: NDArray[np.integer[Any]], trains: int, step_s: float) -> UsefulVoltage:
     useful = UsefulVoltage(trains, 0)
     volts = np.nan_to_num(rows["voltage_v"].to_numpy(float))
     tractive = rows["tractive_force_kn"].to_numpy(float) > 0.0
     useful.add(train, np.full(len(rows), -1), volts, np.nan_to_num(rows["current_a"].to_numpy(float)), tractive, step_s)
-    return useful.of_trains()
+    return useful
 
 
 def _late(calls: pd.DataFrame | None) -> dict[str, Any]:

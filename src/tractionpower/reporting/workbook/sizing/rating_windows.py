@@ -82,4 +82,3 @@ def _matrix(rows: pd.DataFrame, windows: list[float]) -> Iterator[tuple[Any, ...
         kind = str(own["kind"].iloc[0])
         loads = dict(zip(own["window_s"], own["load_a"], strict=True))
         yield device, tr(KINDS.get(kind, kind)), *(loads.get(window) for window in windows)
-
