@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.texts import mark
 
 KINDS = {
-    "unit": "Rectifier units",
-    "substation": "Substations",
-    "feeder": "Feeders",
-    "return_feeder": "Return cables",
-    "cabin_feeder": "Feeders of section cabins",
-    "switch": "Switches",
-    "contact_line": "Contact-line sections",
-    "rails": "Rail sections",
-    "supply_point": "Supply points",
+    "unit": mark("Rectifier units"),
+    "substation": mark("Substations"),
+    "feeder": mark("Feeders"),
+    "return_feeder": mark("Return cables"),
+    "cabin_feeder": mark("Feeders of section cabins"),
+    "switch": mark("Switches"),
+    "contact_line": mark("Contact-line sections"),
+    "rails": mark("Rail sections"),
+    "supply_point": mark("Supply points"),
 }
 """Kinds of devices in words, in the order of sheets and figures."""
 

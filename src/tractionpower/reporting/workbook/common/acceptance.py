@@ -132,12 +132,21 @@ def add(book: Book) -> None:
 
 def accepted_rows(book: Book) -> list[Accepted]:
     """Return the rows: verdicts of the run, a sheet's row in the place of each that it tells, then those of sheets alone."""
-    own = {(row.name, row.limit_name): row for row in book.acceptance}
-    said = [_accepted(verdict) for verdict in book.facts.verdicts]
-    rows = [own.pop((row.name, row.limit_name), row) for row in said]
-    rows += own.values()
+    own = list(book.acceptance)
+    rows = [_taken(own, row) for row in map(_accepted, book.facts.verdicts)]
+    rows += own
     order = {name: number for number, name in enumerate(dict.fromkeys(map(group_of, rows)))}
     return sorted(rows, key=lambda row: order[group_of(row)])
+
+
+def _taken(own: list[Accepted], said: Accepted) -> Accepted:
+    """Return what a sheet tells in the place of a verdict, and take it off the list; of several that of the same place."""
+    same = [row for row in own if (row.name, row.limit_name) == (said.name, said.limit_name)]
+    if not same:
+        return said
+    found = next((row for row in same if row.place == said.place), same[0])
+    own.remove(found)
+    return found
 
 
 def group_of(row: Accepted) -> str:

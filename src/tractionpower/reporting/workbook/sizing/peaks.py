@@ -2,19 +2,39 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import pandas as pd
 
+from tractionpower.model.base import format_time
 from tractionpower.reporting.facts.device_words import KINDS
+from tractionpower.reporting.texts import mark, number, tr
+from tractionpower.reporting.workbook.common.acceptance import Accepted
 from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column
-from tractionpower.reporting.workbook.sizing.ratings import HOLDS, colour_use, colour_word, places_of
+from tractionpower.reporting.workbook.sizing.judging import (
+    HOLDS,
+    NO,
+    YES,
+    at_most,
+    banner,
+    colour_use,
+    colour_word,
+    judged,
+    known,
+    limit_line,
+    sentence,
+)
+from tractionpower.reporting.workbook.sizing.ratings import places_of
+from tractionpower.studies.cases.judgement import PEAK
 
-SHARE = "highest of the setting [%]"
-OTHERS = "all fixed loads"
-NO_SETTING = "no setting"
+SHARE = mark("highest of the setting [%]")
+OTHERS = mark("all fixed loads")
+NO_SETTING = mark("no setting")
 LEAST_PERCENT = 1.0
 """Parts of a peak that are less than this of it are left out [%]."""
 
@@ -24,13 +44,13 @@ Places = Mapping[str, tuple[int, float]]
 _PEAKS = (
     Column("device", widest=34),
     Column("kind", widest=28),
-    Column("highest current [A]", "0"),
+    Column("highest current [A]", "0", key="peak"),
     Column("at", "time"),
     Column("train", "beside", 24),
     Column("takes then [A]", "0"),
     Column("on track"),
     Column("at [km]", "0.000"),
-    Column("part of the peak [A]", "0"),
+    Column("part of the peak [A]", "0", key="part"),
     Column("part [%]", "0.0"),
 )
 
@@ -42,21 +62,26 @@ def add(book: Book) -> None:
     if len(rows):
         page = book.page("Peaks", "Peaks: the highest current of every device, and the trains that cause it")
         page.note(
-            "Highest mean of a step of the current, in either direction. The part of a train is what falls away from the peak"
-            " without it, by superposition: currents of the others held as they are. Trains that give current back have"
-            " negative parts; the parts of substations' no-load voltages that differ from each other belong to no train."
-            f" Parts below {LEAST_PERCENT:g} % are left out; table peaks has more."
+            tr(
+                "Highest mean of a step of the current, in either direction. The part of a train is what falls away from the"
+                " peak without it, by superposition: currents of the others held as they are. Trains that give current back"
+                " have negative parts; the parts of substations' no-load voltages that differ from each other belong to no"
+                " train. Parts below {least} % are left out; table peaks has more.",
+                least=number(LEAST_PERCENT),
+            )
         )
         page.table(_PEAKS, _peaks(rows, places), frozen=True)
     _breakers(book, places)
 
 
 def _peaks(rows: pd.DataFrame, places: Places) -> Iterator[tuple[Any, ...]]:
-    known = [rows["part_a"].abs() >= LEAST_PERCENT / 100.0 * rows["peak_a"], ~rows.duplicated("device")]
-    for row in _in_order(rows[known[0] | known[1]], places).to_dict("records"):
-        share = 100.0 * row["part_a"] / row["peak_a"] if row["peak_a"] else None
+    kept = [rows["part_a"].abs() >= LEAST_PERCENT / 100.0 * rows["peak_a"], ~rows.duplicated("device")]
+    for row in _in_order(rows[kept[0] | kept[1]], places).to_dict("records"):
+        is_known = bool(row["peak_a"]) and known(row["part_a"])
+        share = Formula("100*{part}/{peak}", 100.0 * row["part_a"] / row["peak_a"]) if is_known else None
+        kind = str(row["kind"])
         yield (
-            row["device"], KINDS.get(str(row["kind"]), row["kind"]), row["peak_a"], row["peak_s"], str(row["train"]) or OTHERS,
+            row["device"], tr(KINDS.get(kind, kind)), row["peak_a"], row["peak_s"], str(row["train"]) or tr(OTHERS),
             row["train_current_a"], row["track"], row["position_km"], row["part_a"], share,
         )  # fmt: skip
 
@@ -64,40 +89,91 @@ def _peaks(rows: pd.DataFrame, places: Places) -> Iterator[tuple[Any, ...]]:
 def _in_order(rows: pd.DataFrame, places: Places) -> pd.DataFrame:
     """Return rows of devices by kind and along the line; the rows of a device stay as they are."""
     order = sorted(set(rows["device"].astype(str)), key=lambda device: (*places.get(device, (99, 0.0)), device))
-    number = {device: k for k, device in enumerate(order)}
-    return rows.assign(_at=rows["device"].astype(str).map(number)).sort_values("_at", kind="stable").drop(columns="_at")
+    number_of = {device: k for k, device in enumerate(order)}
+    return rows.assign(_at=rows["device"].astype(str).map(number_of)).sort_values("_at", kind="stable").drop(columns="_at")
 
 
 def _breakers(book: Book, places: Places) -> None:
     rows = book.facts.table("breakers")
     if rows.empty:
         return
+    permitted = book.facts.scenario.sizing.breaker_percent
     page = book.page("Breakers", "Breakers: currents of the feeders against their settings")
+    head = page.next
+    page.next += 1  # for the banner
+    limit = limit_line(page, tr("Permitted, of the setting"), "breaker_percent", permitted, "%")
     page.note(
         "How long a current stays above a share of the setting: the longest time without a break, and all in all. What counts"
-        " is the mean of a step; within a step, and in a fault, currents are higher."
+        " is the mean of a step; within a step, and in a fault, currents are higher. Settings can be edited: shares and verdicts"
+        " follow, durations do not."
     )
     levels = sorted(rows["level_percent"].dropna().unique())
     columns = (
         Column("feeder", widest=34),
-        Column("setting [A]", "0"),
-        Column("highest current [A]", "0"),
+        Column("setting [A]", "0", key="setting"),
+        Column("highest current [A]", "0", key="peak"),
         Column("at", "time"),
-        Column(SHARE, "0.0"),
-        Column(HOLDS, "beside"),
+        Column(SHARE, "0.0", key="share"),
+        Column(HOLDS, "beside", key="holds"),
         Column("trips", "0"),
-        *(Column(f"longest above {level:g} % [s]", "0.0") for level in levels),
-        *(Column(f"in all above {level:g} % [s]", "0.0") for level in levels),
+        *(Column(tr("longest above {level} % [s]", level=number(level)), "0.0") for level in levels),
+        *(Column(tr("in all above {level} % [s]", level=number(level)), "0.0") for level in levels),
     )
-    block = page.table(columns, _breaker_rows(_in_order(rows, places), levels), frozen=True)
-    colour_use(block, SHARE, book.facts.scenario.sizing.breaker_percent)
+    ordered = _in_order(rows, places)
+    block = page.table(columns, _breaker_rows(ordered, levels, (limit, permitted)), frozen=True)
+    for row in range(block.first, block.last + 1):
+        page.sheet[block.cell("setting", row)]._style = page.styles["editable 0"]
+    colour_use(block, SHARE, limit)
     colour_word(block, HOLDS)
+    book.define("breaker_shares", page, block.cells("share"))
+    end, page.next = page.next, head
+    _breaker_banner(page, ordered, block.cells("holds"))
+    page.next = end
+    book.acceptance += _accepted(ordered, permitted)
 
 
-def _breaker_rows(rows: pd.DataFrame, levels: list[float]) -> Iterator[tuple[Any, ...]]:
+def _breaker_banner(page: Any, rows: pd.DataFrame, verdicts: str) -> None:
+    """Say how many feeders pass their settings."""
+    first = rows.drop_duplicates("device")
+    many, bad = int((first["met"].astype(str) != "").sum()), int((first["met"].astype(str) == "no").sum())
+    if not many:
+        banner(page, tr("No feeder has a breaker with a setting"), "doubt")
+        return
+    count = f'COUNTIF({verdicts},"{tr(NO)}")'
+    all_of = f'({count}+COUNTIF({verdicts},"{tr(YES)}"))'
+    text = sentence(tr("{bad} of {many} feeders beyond the setting of their breakers"), bad=(count, bad), many=(all_of, many))
+    banner(page, text, "good", f"{_fixed(count)}>0")
+
+
+def _fixed(formula: str) -> str:
+    """Return a formula with absolute addresses, as a conditional format over several cells needs it."""
+    return formula if "$" in formula else re.sub(r"\b([A-Z]{1,3})(\d+)\b", r"$\1$\2", formula)
+
+
+def _breaker_rows(rows: pd.DataFrame, levels: list[float], limit: tuple[str, float]) -> Iterator[tuple[Any, ...]]:
     for device, own in rows.groupby(rows["device"].astype(str), sort=False):
         first = own.iloc[0]
         by_level = own.drop_duplicates("level_percent").set_index("level_percent")
         times = [by_level[name].get(level) for name in ("longest_s", "total_s") for level in levels]
-        met = str(first["met"]) or NO_SETTING
-        yield device, first["setting_a"], first["peak_a"], first["peak_s"], first["share_percent"], met, first["trips"], *times
+        setting, peak = float(first["setting_a"]), float(first["peak_a"])
+        has_one = math.isfinite(setting) and setting > 0.0
+        value = 100.0 * peak / setting if has_one else ""
+        share = Formula('IF(ISNUMBER({setting}),100*{peak}/{setting},"")', value)
+        verdict = f'IF(ISNUMBER({{share}}),{at_most("share", limit[0])},"{tr(NO_SETTING)}")'
+        holds: Formula | str = Formula(verdict, tr(NO_SETTING))
+        if isinstance(value, float):
+            holds = judged(verdict, NO if value > limit[1] * (1.0 + 1e-9) else YES, str(first["met"]))
+        yield device, setting, peak, first["peak_s"], share, holds, first["trips"], *times
+
+
+def _accepted(rows: pd.DataFrame, permitted: float) -> Iterator[Accepted]:
+    """Yield the feeder with the highest share of its setting."""
+    rated = rows[rows["share_percent"].notna()]
+    if len(rated):
+        worst = rated.iloc[int(rated["share_percent"].argmax())]
+        share = 100.0 * float(worst["peak_a"]) / float(worst["setting_a"])
+        when = format_time(worst["peak_s"]) if known(worst["peak_s"]) else ""
+        yield Accepted(
+            PEAK, "breaker_percent", permitted, "%", "at_most", Formula("MAX({breaker_shares})", share), str(worst["device"]),
+            when, "user", "settings of the inputs",
+        )  # fmt: skip

@@ -82,7 +82,8 @@ class Judge:
             What stands in the column of the rated current; left out: its value.
         """
         load, permitted, multiple = float(row["load_a"]), permitted_of(row), multiple_of(row)
-        found = {"rated": row["rated_current_a"] if rated is None else rated, "load": load, "from": row["from_s"]}
+        found = {"rated": row["rated_current_a"] if rated is None else rated, "load": load}
+        found["from"] = row["from_s"] if row["window_s"] > 0.0 else None
         if not known(row["utilisation_percent"]) or not math.isfinite(permitted):
             return found | {"multiple": None, "permitted": None, "use": None, "left": None, "holds": tr(UNRATED)}
         use = use_of(load, permitted)
@@ -124,10 +125,20 @@ def multiple_of(row: Any) -> float | None:
     return multiple if abs(rated * multiple - permitted) <= _NEAR * permitted else None
 
 
-def source_numbers(ruling: pd.DataFrame) -> dict[tuple[str, str], int]:
-    """Return a number for each source of ratings, which are too long to stand in every row."""
+def sources_of(ruling: pd.DataFrame) -> tuple[list[tuple[str, str]], dict[tuple[str, str], int]]:
+    """Return the sources of ratings in words, each with its status, and the number of each pair of status and source.
+
+    They are too long to stand in every row. Inputs of the user that differ in the device alone are one source.
+    """
+    told: dict[tuple[str, str], list[str]] = {}
+    numbers: dict[tuple[str, str], int] = {}
     pairs = zip(ruling["status"].astype(str), ruling["source"].astype(str), strict=True)
-    return {pair: number for number, pair in enumerate(dict.fromkeys(pair for pair in pairs if pair[0]), 1)}
+    for status, source in dict.fromkeys(pair for pair in pairs if pair[0]):
+        head, blank, tail = source.partition(" of ") if status == "user" else (source, "", "")
+        own = told.setdefault((status, f"{head}{blank}"), [])
+        own += [tail] if tail else []
+        numbers[status, source] = list(told).index((status, f"{head}{blank}")) + 1
+    return [(status, f"{head}{', '.join(dict.fromkeys(tails))}") for (status, head), tails in told.items()], numbers
 
 
 def keyed(columns: Sequence[Column], cells: dict[str, Any]) -> list[Any]:

@@ -13,7 +13,7 @@ from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS
 from tractionpower.reporting.workbook.frame.page import Column, Page
 from tractionpower.reporting.workbook.sizing.judging import HOLDS, colour_use, colour_word, limit_line, window_in_words
-from tractionpower.reporting.workbook.sizing.rated_cells import LOADS, USE, Judge, keyed, source_numbers
+from tractionpower.reporting.workbook.sizing.rated_cells import LOADS, USE, Judge, keyed, sources_of
 
 SHEETS = (
     (mark("Units"), mark("Units: load and rating of the rectifier units"), ("unit",)),
@@ -38,7 +38,7 @@ def add(book: Book, ruling: pd.DataFrame) -> dict[str, str]:
     """Add a sheet for each kind of devices, or for those that belong together; return the name of the sheet of each kind."""
     known = {kind for _, _, kinds in SHEETS for kind in kinds}
     left = tuple(kind for kind in dict.fromkeys(ruling["kind"].astype(str)) if kind not in known)
-    judge, numbers = Judge.of(book), source_numbers(ruling)
+    judge, numbers = Judge.of(book), sources_of(ruling)[1]
     found: dict[str, str] = {}
     for name, title, kinds in (*SHEETS, (*OTHERS, left)):
         rows = ruling[ruling["kind"].astype(str).isin(kinds)]
@@ -55,7 +55,7 @@ def name_of(kind: str) -> str:
 
 
 def _fill(page: Page, rows: pd.DataFrame, judge: Judge, numbers: dict[tuple[str, str], int]) -> None:
-    limit = limit_line(page, tr("permitted utilisation"), "utilisation_percent", judge.permitted, "%")
+    limit = limit_line(page, tr("Permitted utilisation"), "utilisation_percent", judge.permitted, "%")
     page.note(
         "Of every device the window that rules. Permitted: rated current times multiple; where units go and come during the run"
         " it holds what is permitted until a reserve feeds, and no multiple stands beside it. Source: the number in the list of"
@@ -86,7 +86,7 @@ def _columns(*, several: bool, has_ends: bool) -> list[Column]:
         Column("duty class", "beside", 12, key="duty"),
         Column("window that rules", "beside", key="window"),
         *LOADS,
-        Column("status of the rating", "beside", 18, key="status"),
+        Column("status of the rating", "beside", 26, key="status"),
         Column("source", "0", key="source"),
     ]
 

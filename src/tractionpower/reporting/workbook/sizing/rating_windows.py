@@ -46,7 +46,7 @@ def _rated(book: Book, rows: pd.DataFrame) -> None:
         return
     page = book.page("Ratings by window", "Ratings by window: devices that are rated for several windows")
     judge = Judge.of(book)
-    limit = limit_line(page, tr("permitted utilisation"), "utilisation_percent", judge.permitted, "%")
+    limit = limit_line(page, tr("Permitted utilisation"), "utilisation_percent", judge.permitted, "%")
     page.note("The window with the highest utilisation rules. A window longer than the run is held against the whole of it.")
     cells = (_device(row) | judge.cells(row, limit) for row in several.to_dict("records"))
     block = page.table(_COLUMNS, (keyed(_COLUMNS, each) for each in cells), frozen=True)
@@ -66,7 +66,7 @@ def _loads(book: Book, rows: pd.DataFrame) -> None:
     """Add a row for each device and a column for each window."""
     page = book.page("Loads by window", "Loads by window: the highest root mean square of the current over every window")
     page.note(
-        "Highest sliding root mean square of the current of every device [A]; windows that the run is too short for have no value."
+        "Highest sliding root mean square of the current of every device [A]; none where the run is too short."
     )
     windows = sorted(rows["window_s"].unique(), key=lambda window: (window == 0.0, window))
     columns = (

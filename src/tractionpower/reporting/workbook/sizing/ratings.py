@@ -32,7 +32,7 @@ from tractionpower.reporting.workbook.sizing.judging import (
     sentence,
     window_in_words,
 )
-from tractionpower.reporting.workbook.sizing.rated_cells import Judge, permitted_of, source_numbers, use_of
+from tractionpower.reporting.workbook.sizing.rated_cells import Judge, permitted_of, sources_of, use_of
 from tractionpower.reporting.workbook.sizing.rated_devices import name_of
 from tractionpower.studies.ratings.words import KINDS as VERDICT_KINDS
 from tractionpower.studies.ratings.words import window_words
@@ -224,11 +224,11 @@ def _duties(book: Book, page: Page) -> None:
 
 def _sources(page: Page, ruling: pd.DataFrame) -> None:
     """Write below where the ratings come from."""
-    numbers = source_numbers(ruling)
-    if not numbers:
+    sources, _ = sources_of(ruling)
+    if not sources:
         return
     page.section("Sources of the ratings")
-    for (status, source), count in numbers.items():
+    for count, (status, source) in enumerate(sources, 1):
         page.wrapped(f"{count}: {tr(KNOWN_AS.get(status, status))}. {recorded(source)}")
 
 

@@ -1,166 +1,261 @@
-"""The sheets of the mean useful voltage by both definitions, and of how long which voltage lasts."""
+"""The sheets of the mean useful voltage by both definitions: zones and trains, over the run and by the hour."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import pandas as pd
-from openpyxl.formatting.rule import FormulaRule
 
-from tractionpower.model.limits import Limit
+from tractionpower.model.base import format_time
+from tractionpower.model.limits import USEFUL_NAMES, Limit
+from tractionpower.reporting.texts import mark, number, recorded, tr
+from tractionpower.reporting.workbook.common.acceptance import Accepted
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.cells import RED_FILL, fill
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
+from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page
-from tractionpower.reporting.workbook.sizing.ratings import HOLDS, UNRATED, colour_word
+from tractionpower.reporting.workbook.sizing import voltage_durations
+from tractionpower.reporting.workbook.sizing.judging import (
+    HOLDS,
+    NO,
+    UNRATED,
+    YES,
+    colour_red,
+    colour_word,
+    judged,
+    known,
+    limit_line,
+)
+from tractionpower.reporting.workbook.sizing.rated_cells import keyed
+from tractionpower.results.spells import TOLERANCE_V
+from tractionpower.studies.ratings.useful import DEFINITIONS
+from tractionpower.studies.ratings.verdicts import ZONES
 
-WEIGHTED, MEAN = "weighted by current [V]", "mean over time [V]"
+WEIGHTED, MEAN = mark("weighted by current [V]"), mark("mean over time [V]")
 MOST_ROWS = 3000
 """Rows of a table of single trains; with more, the lowest are shown."""
 
+BELOW = f"{TOLERANCE_V:g}"
+"""By how much a mean may be below the limit [V]."""
+
+_SUMS = {
+    "weighted": ("power", "current", "1000*{power}/{current}", 1000.0),
+    "mean": ("voltage_time", "time", "{voltage_time}/{time}", 1.0),
+}
+"""Of each mean the columns of its two sums, its formula, and the factor in it."""
+
+_COLUMNS = {"weighted": "current_weighted_v", "mean": "time_mean_v"}
+_OF_SUMS = {"power": "power_sum_kw", "current": "current_sum_a", "voltage_time": "voltage_time_vs", "time": "counted_s"}
+
 _VALUES = (
-    Column(WEIGHTED, "0"),
-    Column(MEAN, "0"),
-    Column("limit [V]", "0"),
-    Column(HOLDS, "beside"),
-    Column("trains that count", "0"),
-    Column("trains left out", "0"),
+    Column(WEIGHTED, "0", key="weighted"),
+    Column(MEAN, "0", key="mean"),
+    Column(HOLDS, "beside", key="holds"),
+    Column("trains that count", "0", key="trains"),
+    Column("trains left out", "0", key="left_out"),
+    Column("sum of mean U |I| [kW]", "0.0", key="power"),
+    Column("sum of mean |I| [A]", "0.0", key="current"),
+    Column("sum of U dt [V s]", "0", key="voltage_time"),
+    Column("sum of dt [s]", "0.0", key="time"),
 )
-_SPAN = (Column("from", "time"), Column("to", "time"))
+_SPAN = (Column("from", "time", key="from"), Column("to", "time", key="to"))
 
 
 def add(book: Book) -> None:
     """Add the sheets, if the run has their tables."""
     rows = book.facts.table("useful_voltage")
     if len(rows):
-        _useful(book, rows)
-    _durations(book)
+        limit = useful_limit(book.facts)
+        _useful(book, rows, limit)
+        _hours(book, rows[(rows["kind"] == "zone") & (rows["window"] == "hour")], limit)
+    voltage_durations.add(book)
 
 
 def limit_note(limit: Limit | None) -> str:
     """Return in words what the mean useful voltage is held against, and how that is known."""
     if limit is None:
-        return "The limits table has no lowest mean useful voltage for this system, so nothing is judged."
-    known = KNOWN_AS.get(limit.status, limit.status)
-    checked = (
-        "" if limit.status == "verified" else " Checked against this editable value, which is no statement about a standard."
+        return tr("The limits table has no lowest mean useful voltage for this system, so nothing is judged.")
+    known_as = tr(KNOWN_AS.get(limit.status, limit.status))
+    told = {"value": f"{number(limit.value)} {limit.unit}", "known": known_as, "source": recorded(limit.source)}
+    if limit.status == "verified":
+        return tr("Limit: {value}, {meaning}; {known} ({source}).", meaning=recorded(limit.meaning), **told)
+    return tr(
+        "Limit: {value}, {meaning}; {known} ({source}). Checked against this editable value, which is no statement about a"
+        " standard.",
+        meaning=recorded(limit.meaning),
+        **told,
     )
-    return f"Limit: {limit.value:g} {limit.unit}, {limit.meaning}; {known} ({limit.source}).{checked}"
 
 
 def useful_limit(facts: Facts) -> Limit | None:
     """Return the lowest mean useful voltage of the class of the line."""
-    high_speed = facts.scenario.sizing.useful_voltage.line_class == "high_speed"
-    return (facts.limit("u_useful_high_speed") if high_speed else None) or facts.limit("u_useful")
+    line_class = facts.scenario.sizing.useful_voltage.line_class
+    return facts.limit(USEFUL_NAMES[line_class]) or facts.limit("u_useful")
 
 
-def _useful(book: Book, rows: pd.DataFrame) -> None:
+def _useful(book: Book, rows: pd.DataFrame, limit: Limit | None) -> None:
     page = book.page("Useful voltage", "Mean useful voltage of zones and trains, by both definitions")
-    study = book.facts.scenario.sizing.useful_voltage
+    cell = _limit_line(page, limit)
+    stay_s = book.facts.scenario.sizing.useful_voltage.shortest_stay_s
     page.note(
-        "Weighted by current: of each train the voltage weighted by its current, with the time that it is there; mean over time:"
-        " the mean of the voltages at the pantographs of the trains. A train that is in a zone for less than"
-        f" {study.shortest_stay_s:g} s within a window is left out there; no source gives a value for that, so it is one of the"
-        " study. The two definitions are secondary: read from works that use them, not from the standard."
+        tr(
+            "Weighted by current: of each train the means of U |I| and of |I| over the time that it is there; the sum of the"
+            " former over the sum of the latter. Mean over time: the sum of U dt over the time, at the pantographs of all trains"
+            " of a zone, or of a train while it exerts traction effort. A train that is in a zone for less than {stay} s within a"
+            " window is left out there; no source gives a value for that, so it is one of the study. The two definitions are"
+            " secondary: read from works that use them, not from the standard.",
+            stay=number(stay_s),
+        )
     )
-    page.note(limit_note(useful_limit(book.facts)))
+    page.note(limit_note(limit))
     zones, trains = rows[rows["kind"] == "zone"], rows[rows["kind"] == "train"]
+    judge = _Judge(limit, cell)
     whole = zones[zones["window"] == "run"]
     if len(whole):
         page.section("Zones, whole run")
-        _table(page, (Column("zone", widest=40),), whole, spans=False)
-    _hourly(page, zones[zones["window"] == "hour"], "current_weighted_v", "weighted by current")
-    _hourly(page, zones[zones["window"] == "hour"], "time_mean_v", "mean over time")
+        block = judge.table(page, Column("zone", widest=40, key="subject"), whole)
+        _accept(book, page, (block, "run"), whole, limit)
     given = rows[rows["window"] == "given"]
     if len(given):
         page.section("Windows of the study")
-        _table(page, (Column("zone or train", widest=40),), given, spans=True)
+        judge.table(page, Column("zone or train", widest=40, key="subject"), given, spans=_SPAN)
+        _accept_plain(book, given[given["kind"] == "zone"], "given", limit)
     own = trains[trains["window"] == "run"]
     if len(own):
         page.new_page()
         page.section("Trains, whole run, the lowest first")
         if len(own) > MOST_ROWS:
-            page.note(f"The lowest {MOST_ROWS} of {len(own)} trains; table useful_voltage has all.")
+            page.note(tr("The lowest {shown} of {all} trains; table useful_voltage has all.", shown=MOST_ROWS, all=len(own)))
         lowest = own.sort_values("current_weighted_v", kind="stable").head(MOST_ROWS)
-        _table(page, (Column("train", widest=40),), lowest, spans=False)
+        judge.table(page, Column("train", widest=40, key="subject"), lowest)
 
 
-def _table(page: Page, first: tuple[Column, ...], rows: pd.DataFrame, *, spans: bool) -> Block:
-    names = ("current_weighted_v", "time_mean_v", "limit_v", "met", "trains", "left_out")
-    cells = (
-        (row["subject"], *((row["from_s"], row["to_s"]) if spans else ()), *(_shown(row, name) for name in names))
-        for row in rows.to_dict("records")
-    )
-    block = page.table((*first, *(_SPAN if spans else ()), *_VALUES), cells)
-    colour_word(block, HOLDS)
-    return block
+def _limit_line(page: Page, limit: Limit | None) -> str:
+    """Write the limit above the tables and return its address; empty without one."""
+    return "" if limit is None else limit_line(page, tr("Lowest permitted"), limit.name, limit.value, limit.unit)
 
 
-def _shown(row: dict[Any, Any], name: str) -> Any:
-    return (str(row[name]) or UNRATED) if name == "met" else row[name]
+class _Judge:
+    """Means held against a limit: its value, and the address of the cell with it."""
+
+    def __init__(self, limit: Limit | None, cell: str) -> None:
+        self.limit, self.cell = limit, cell
+
+    def table(self, page: Page, first: Column, rows: pd.DataFrame, spans: tuple[Column, ...] = ()) -> Block:
+        """Write a table of means; those below the limit show red."""
+        columns = tuple(column for column in (first, *spans, *_VALUES) if _has(column, rows))
+        block = page.table(columns, (keyed(columns, self.cells(row)) for row in rows.to_dict("records")))
+        colour_word(block, HOLDS)
+        self.colour(block, (block.cells("weighted"), block.cells("mean")))
+        return block
+
+    def colour(self, block: Block, areas: tuple[str, ...]) -> None:
+        """Let means below the limit show red."""
+        if self.cell:
+            for area in areas:
+                colour_red(block, area, f"<{self.cell}-{BELOW}")
+
+    def cells(self, row: Mapping[Any, Any]) -> dict[str, Any]:
+        """Return the cells of a row of table ``useful_voltage``."""
+        means = {name: mean_cell(row, name) for name in _SUMS}
+        sums = {key: row.get(name) for key, name in _OF_SUMS.items()}
+        told = {"from": row["from_s"], "to": row["to_s"], "trains": row["trains"], "left_out": row["left_out"]}
+        return {"subject": row["subject"], **told, **means, **sums, "holds": self._verdict(row, means)}
+
+    def _verdict(self, row: Mapping[Any, Any], means: Mapping[str, Any]) -> Formula | str:
+        values = [value for value in map(_value, means.values()) if known(value)]
+        if self.limit is None or not values:
+            return tr(UNRATED)
+        word = NO if min(values) < self.limit.value - TOLERANCE_V else YES
+        text = f'IF(MIN({{weighted}},{{mean}})<{self.cell}-{BELOW},"{tr(NO)}","{tr(YES)}")'
+        return judged(text, word, str(row["met"]))
 
 
-def _hourly(page: Page, rows: pd.DataFrame, name: str, words: str) -> None:
-    """Write a row for each hour and a column for each zone; values below the limit show red."""
+def mean_cell(row: Mapping[Any, Any], name: str) -> Any:
+    """Return a mean as a formula on its sums where the table has them, else the value; None without one."""
+    above, below, text, factor = _SUMS[name]
+    value, sums = row[_COLUMNS[name]], (row.get(_OF_SUMS[above]), row.get(_OF_SUMS[below]))
+    if not known(value):
+        return None
+    if not (known(sums[0]) and known(sums[1]) and sums[1] > 0.0):
+        return float(value)
+    return Formula(text, factor * sums[0] / sums[1])
+
+
+def _has(column: Column, rows: pd.DataFrame) -> bool:
+    """Return whether a column can be filled: results of earlier versions have no sums."""
+    return _OF_SUMS.get(column.key, "subject") in rows.columns
+
+
+def _value(cell: Any) -> Any:
+    return cell.value if isinstance(cell, Formula) else cell
+
+
+def _hours(book: Book, rows: pd.DataFrame, limit: Limit | None) -> None:
+    """Add zones by the hour: a row for each hour and a column for each zone, and below all of them with their sums."""
     if rows.empty:
         return
+    page = book.page("Useful voltage by hour", "Mean useful voltage of the zones in every hour, by both definitions")
+    judge = _Judge(limit, _limit_line(page, limit))
+    page.note("Red: below the lowest permitted. The list of all hours below holds the sums that the means come from.")
     zones = list(dict.fromkeys(rows["subject"].astype(str)))
-    wide = rows.assign(zone=rows["subject"].astype(str)).pivot_table(index="from_s", columns="zone", values=name, dropna=False)
-    wide = wide.reindex(columns=zones).sort_index()
+    ordered = rows.assign(zone=rows["subject"].astype(str)).sort_values(["from_s"], kind="stable")
+    numbers = {(row["from_s"], row["zone"]): k for k, row in enumerate(ordered.to_dict("records"), 1)}
+    cells = [judge.cells(row) for row in ordered.to_dict("records")]
+    columns = (Column("hour begins", "time"), *(Column(zone, "0", key=f"zone_{k}") for k, zone in enumerate(zones)))
+    for name, words in (("weighted", mark("Weighted by current [V]")), ("mean", mark("Mean over time [V]"))):
+        page.section(words)
+        block = page.table(columns, _matrix(zones, numbers, cells, name))
+        judge.colour(block, (f"{block.cell('zone_0', block.first)}:{block.cell(f'zone_{len(zones) - 1}', block.last)}",))
     page.new_page()
-    page.section(f"Zones by the hour, {words} [V]")
-    columns = (Column("hour begins", "time"), *(Column(zone, "0") for zone in zones))
-    block = page.table(columns, ((at, *values) for at, values in zip(wide.index, wide.to_numpy(float), strict=True)))
-    limit = rows["limit_v"].max()
-    if limit > 0.0 and zones:
-        area = f"{block.cells(zones[0]).split(':')[0]}:{block.cells(zones[-1]).split(':')[1]}"
-        first = area.split(":", maxsplit=1)[0]
-        rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{first}<{float(limit)!r})"], fill=fill(RED_FILL))
-        block.sheet.conditional_formatting.add(area, rule)
+    page.section("All hours")
+    block = judge.table(page, Column("zone", widest=40, key="subject"), ordered, spans=_SPAN[:1])
+    for name in _SUMS:
+        book.define(f"hourly_{name}", page, block.cells(name))
+    _accept(book, page, (block, "hour"), ordered, limit)
 
 
-def _durations(book: Book) -> None:
-    rows = book.facts.table("voltage_durations")
-    if rows.empty:
+def _matrix(
+    zones: list[str], numbers: Mapping[tuple[float, str], int], cells: list[dict[str, Any]], name: str
+) -> Iterator[list[Any]]:
+    """Yield rows of hours, by formulas on the list of all hours."""
+    for hour in dict.fromkeys(hour for hour, _ in numbers):
+        row: list[Any] = [hour]
+        for zone in zones:
+            at = numbers.get((hour, zone))
+            value = None if at is None else _value(cells[at - 1][name])
+            row.append(Formula(f"INDEX({{hourly_{name}}},{at})", value) if known(value) else None)
+        yield row
+
+
+_WINDOWS = {"run": "", "hour": ", worst hour", "given": ", worst given part of the day"}
+
+
+def _accept(book: Book, page: Page, at: tuple[Block, str], rows: pd.DataFrame, limit: Limit | None) -> None:
+    """Tell the sheet of acceptance the lowest means of zones, by formulas on a table of them."""
+    block, window = at
+    for name in _SUMS:
+        area = f"useful_{window}_{name}"
+        book.define(area, page, block.cells(name))
+        book.acceptance += _accepted(book.facts, rows, (window, name), limit, f"MIN({{{area}}})")
+
+
+def _accept_plain(book: Book, rows: pd.DataFrame, window: str, limit: Limit | None) -> None:
+    """Tell it without formulas where other rows stand between."""
+    for name in _SUMS:
+        book.acceptance += _accepted(book.facts, rows, (window, name), limit, "")
+
+
+def _accepted(facts: Facts, rows: pd.DataFrame, what: tuple[str, str], limit: Limit | None, text: str) -> Iterator[Accepted]:
+    (window, name), told = what, rows[rows[_COLUMNS[what[1]]].notna()]
+    if limit is None or told.empty:
         return
-    page = book.page("Voltage durations", "How long which voltage lasts at the pantographs")
-    page.note(
-        "Bands between the limits of the voltage of this system (quantities as in EN 50163). Longest: without a break, in the"
-        " band or beyond it. Permitted: the longest permitted time there; 0 s: none, empty: any. Sheet Inputs limits has source"
-        " and status of each limit; those that are not 'verified' are editable values."
-    )
-    every = rows[rows["train"].astype(str) == ""]
-    if len(every):
-        page.section("All trains")
-        colour_word(page.table(_BANDS, (("all trains", *cells[1:]) for cells in _band_rows(every))), HOLDS)
-    trains = rows[(rows["train"].astype(str) != "") & (rows["total_s"] > 0.0)]
-    page.section("Each train, bands that it was in, where something is limited")
-    trains = trains[trains["permitted_s"].notna()]
-    if trains.empty:
-        page.line("No train was in a band whose time is limited.")
-        return
-    if len(trains) > MOST_ROWS:
-        page.note(f"The longest {MOST_ROWS} of {len(trains)}; table voltage_durations has all.")
-    longest = trains.sort_values("longest_s", ascending=False, kind="stable").head(MOST_ROWS)
-    colour_word(page.table(_BANDS, _band_rows(longest)), HOLDS)
-
-
-_BANDS = (
-    Column("train", widest=28),
-    Column("band", widest=34),
-    Column("from [V]", "0"),
-    Column("to [V]", "0"),
-    Column("in all [s]", "0.0"),
-    Column("share of the time [%]", "0.00"),
-    Column("longest [s]", "0.0"),
-    Column("it begins", "time"),
-    Column("permitted [s]", "0"),
-    Column(HOLDS, "beside"),
-)
-
-
-def _band_rows(rows: pd.DataFrame) -> Iterator[tuple[Any, ...]]:
-    names = ("from_v", "to_v", "total_s", "share_percent", "longest_s", "longest_from_s", "permitted_s")
-    for row in rows.to_dict("records"):
-        yield row["train"], row["band"], *(row[name] for name in names), str(row["met"]) or "not limited"
+    worst = told.iloc[int(told[_COLUMNS[name]].argmin())]
+    lowest = min(_value(mean_cell(row, name)) for row in told.to_dict("records"))
+    stay = f"(of trains there for {facts.scenario.sizing.useful_voltage.shortest_stay_s:g} s or more)"
+    yield Accepted(
+        f"{ZONES}, {DEFINITIONS[_COLUMNS[name]]}{_WINDOWS[window]} {stay}", limit.name, limit.value, "V", "at_least",
+        Formula(text, lowest) if text else lowest, f"zone {worst['subject']}",
+        "" if window == "run" else format_time(worst["from_s"]), limit.status, limit.source, tolerance=TOLERANCE_V,
+    )  # fmt: skip
