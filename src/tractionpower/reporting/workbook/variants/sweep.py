@@ -1,48 +1,49 @@
-"""The workbook of a sweep: the cases with what they set, their figures, the differences from the base."""
+"""The workbook of a sweep: the cases with what they set, verdicts, differences from the base, charts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from datetime import datetime
-from typing import Any
-
-import pandas as pd
-from openpyxl.formatting.rule import ColorScaleRule
 
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.facts.sweep_data import WORDS, SweepData
+from tractionpower.reporting.facts.sweep_data import SweepData
+from tractionpower.reporting.texts import mark, number, tr, trn
 from tractionpower.reporting.workbook.common import acceptance, definitions, inputs
 from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in, verdict_sentence
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
-from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, shorten
+from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
-from tractionpower.reporting.workbook.frame.page import Block, Column, heading_of
+from tractionpower.reporting.workbook.variants.sweep_cases import Cases, Cells
+from tractionpower.reporting.workbook.variants.sweep_charts import add_charts
+from tractionpower.reporting.workbook.variants.sweep_differences import add_best, add_differences
+from tractionpower.reporting.workbook.variants.sweep_tables import add_figures, add_variants, add_verdicts
+from tractionpower.reporting.workbook.variants.sweep_words import differing_figures, heading
 from tractionpower.results.results import Results
-from tractionpower.studies.sweep.cases import number_of
-from tractionpower.studies.sweep.differences import FIGURES, HIGHER_IS_BETTER, NOT_JUDGED
 
-COUNTS = ("late_trains", "stuck_trains", "overloaded", "trips", "flagged_steps")
-"""Figures that are whole numbers."""
+MOST_SAID = 6
+"""Figures whose best and worst case stand on the cover; sheet Best and worst has all of them."""
 
-PLACES = {
-    "lowest_voltage_v": (("lowest_voltage_track", "beside"), ("lowest_voltage_km", "0.0"), ("lowest_voltage_s", "time")),
-    "useful_zone_v": (("useful_zone", "beside"),),
-    "useful_train_v": (("useful_train", "beside"),),
-    "useful_zone_time_mean_v": (("useful_zone_time_mean", "beside"),),
-    "useful_train_time_mean_v": (("useful_train_time_mean", "beside"),),
-    "worst_late_s": (("worst_late_train", "beside"),),
-    "utilisation_percent": (("utilisation_device", "beside"),),
-}
-"""What stands beside a figure, with the style of its cells: where it came about, and when."""
+ENDS = {"best": mark("best"), "worst": mark("worst"), "lowest": mark("lowest"), "highest": mark("highest")}
+STATUSES = {
+    "complete": mark("complete"), "flagged": mark("flagged"), "refused": mark("refused"), "failed": mark("failed"),
+}  # fmt: skip
 
 
 def build(results: Results, scenario: Scenario, report: Report) -> Book:
     """Return the workbook; a sheet that would be empty is left out."""
     book, data = Book(Facts(results, scenario), report), SweepData(results, scenario)
-    front = book.page("Cover", shorten(f"{book.facts.study}: variants", TITLE_LENGTH))
-    _cases(book, data)
-    _differences(book, data)
+    front = book.page("Cover", shorten(tr("{study}: variants", study=book.facts.study), TITLE_LENGTH))
+    cases, cells = Cases(data), Cells()
+    variants = add_variants(book, data, cases, cells)
+    add_figures(book, data, cases, cells)
+    others = book.pages.pop()  # formulas of all sheets ask for its ranges, but it is the last that is read
+    if cases.words:
+        add_best(book, data, cases, cells)
+        add_differences(book, data, cases, cells)
+        add_charts(book, data, cases, cells, variants)
+        add_verdicts(book, cases, cells)
+    book.pages.append(others)
     for add in (inputs.add, definitions.add, acceptance.add):
         add(book)
     fill_in(book, front, (lambda _: _head(data), lambda facts: _verdicts(facts, data), lambda facts: _trust(facts, data)))
@@ -50,107 +51,54 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
     return book
 
 
-def _shown(data: SweepData) -> list[str]:
-    """Return the figures that at least one case has."""
-    return [name for name in FIGURES if name in data.measured and data.measured[name].notna().any()]
-
-
-def _cases(book: Book, data: SweepData) -> None:
-    page = book.page("Cases", "Cases: what each sets, and what came of it")
-    page.note(
-        "The base is the study as it is. A case sets the inputs whose values stand in its row; an empty cell leaves an input as"
-        " it is in the base. A case that was refused or failed has no figures; the reason tells why. The darker, the worse."
-    )
-    paths = list(data.changes.columns)
-    shown = _shown(data)
-    columns = [Column("case"), *(Column(path, "any", 26) for path in paths), Column("status", widest=12)]
-    for name in shown:
-        columns.append(Column(heading_of(name), "0" if name in COUNTS else "0.0"))
-        columns += [Column(f"{heading_of(beside)} ", style, 24) for beside, style in PLACES.get(name, ())]
-    columns.append(Column("reason", widest=60))
-    block = page.table(columns, ([*_case_row(data, row, paths, shown)] for row in data.cases.to_dict("records")), frozen=True)
-    for name in shown:
-        _shade(block, heading_of(name), name)
-
-
-def _case_row(data: SweepData, row: Mapping[Any, Any], paths: list[str], shown: list[str]) -> Iterator[Any]:
-    yield row["case"]
-    own = data.changes.loc[row["case"]] if row["case"] in data.changes.index else {}
-    for path in paths:
-        value = own.get(path)
-        number = number_of(value) if isinstance(value, str) else None
-        yield number if number is not None else value if isinstance(value, str) else None
-    yield row["status"]
-    for name in shown:
-        yield row[name]
-        yield from (row[beside] for beside, _ in PLACES.get(name, ()))
-    yield row["reason"]
-
-
-def _differences(book: Book, data: SweepData) -> None:
-    """Add the sheet of differences: those figures that differ in at least one case."""
-    if "differences" not in data.results.tables:
-        return
-    rows = data.results.table("differences").astype({"case": str, "figure": str})
-    differing = [name for name in FIGURES if (rows.loc[rows["figure"] == name, "difference"] != 0.0).any()]
-    if not differing:
-        return
-    page = book.page("Differences", "Differences of the figures from those of the base")
-    page.note("Value of the case less that of the base, and in per cent of that of the base.")
-    columns = [Column("case"), Column("what it sets", widest=60)]
-    for name in differing:
-        columns.append(Column(heading_of(name), "0" if name in COUNTS else "0.0"))
-        columns.append(Column(f"{heading_of(name).split(' [')[0]} [%]", "0.0"))
-    subjects = dict(zip(data.cases["case"], data.cases["subject"], strict=True))
-    kinds = ("difference", "percent")
-    wide = rows.pivot_table(index="case", columns="figure", values=list(kinds), aggfunc="first", sort=False)
-    order = [case for case in data.cases["case"] if case in wide.index]
-    wide = wide.reindex(columns=pd.MultiIndex.from_tuples([(kind, name) for name in differing for kind in kinds]))
-    lines = ((case, subjects[case], *wide.loc[case]) for case in order)
-    block = page.table(columns, lines, frozen=True)
-    for name in differing:
-        _shade(block, heading_of(name), name)
-
-
-def _shade(block: Block, heading: str, name: str) -> None:
-    """Shade a column from good to bad; energy, which is neither, stays as it is."""
-    if name in NOT_JUDGED or block.last <= block.first:
-        return
-    low, high = (RED_FILL, GREEN_FILL) if name in HIGHER_IS_BETTER else (GREEN_FILL, RED_FILL)
-    ends = {"start_type": "min", "start_color": low, "end_type": "max", "end_color": high}
-    rule = ColorScaleRule(mid_type="percentile", mid_value=50, mid_color=AMBER_FILL, **ends)
-    block.sheet.conditional_formatting.add(block.cells(heading), rule)
-
-
 def _head(data: SweepData) -> Iterator[Said]:
     sweep, counts = data.run["sweep"], data.run["cases"]
-    yield "What was computed", f"The base and {counts['all'] - 1} variants of it.", "wrapped"
+    many = counts["all"] - 1
+    yield (
+        tr("What was computed"),
+        trn("The base and {count} variant of it.", "The base and {count} variants of it.", many),
+        "wrapped",
+    )
     for path, values in data.keys.items():
-        shown = ", ".join(values[:12]) + (f", ... ({len(values)} values)" if len(values) > 12 else "")
-        yield "Varied", f"{path}: {shown}", "wrapped"
+        shown = ", ".join(values[:12])
+        if len(values) > 12:
+            shown = tr("{values}, ... ({count} values)", values=shown, count=len(values))
+        yield tr("Varied"), f"{path}: {shown}", "wrapped"
     if sweep.get("sample"):
-        yield "Sample", f"{sweep['sample']['count']} draws with seed {sweep['sample']['seed']}.", "wrapped"
+        count, seed = sweep["sample"]["count"], sweep["sample"]["seed"]
+        yield tr("Sample"), tr("{count} draws with seed {seed}.", count=count, seed=seed), "wrapped"
 
 
 def _verdicts(facts: Facts, data: SweepData) -> Iterator[Said]:
     subjects = dict(zip(data.cases["case"], data.cases["subject"], strict=True))
-    for name, found in data.run["sweep"]["extremes"].items():
-        ends = (f"{word} {one['value']:.1f} (case {one['case']}: {subjects[one['case']]})" for word, one in found.items())
-        yield WORDS.get(name, heading_of(name)).replace("\n", " "), f"{'; '.join(ends)}.", "wrapped"
+    extremes = data.run["sweep"]["extremes"]
+    for name in differing_figures(data)[:MOST_SAID]:
+        ends = (
+            tr(
+                "{end} {value} (case {case}: {subject})",
+                end=tr(ENDS[word]), value=number(one["value"]), case=one["case"], subject=subjects[one["case"]],
+            )
+            for word, one in extremes[name].items()
+        )  # fmt: skip
+        yield tr(heading(name)), f"{'; '.join(ends)}.", "wrapped"
     for verdict in facts.verdicts:
-        yield "Worst of all cases", verdict_sentence(verdict), {True: "good", False: "bad"}.get(verdict["met"], "doubt")
+        yield tr("Worst of all cases"), verdict_sentence(verdict), {True: "good", False: "bad"}.get(verdict["met"], "doubt")
 
 
 def _trust(facts: Facts, data: SweepData) -> Iterator[Said]:
     counts = data.cases["status"].value_counts()
-    parts = ", ".join(f"{counts[status]} {status}" for status in sorted(counts.index))
+    parts = ", ".join(f"{counts[status]} {tr(STATUSES.get(status, status))}" for status in sorted(counts.index))
     style = "good" if set(counts.index) == {"complete"} else "doubt"
-    yield "Status of the cases", f"{len(data.cases)} cases: {parts}.", style
+    told = trn("{count} case: {parts}.", "{count} cases: {parts}.", len(data.cases), parts=parts)
+    yield tr("Status of the cases"), told, style
     bare = data.cases[~data.cases["case"].isin(data.measured["case"])]
-    for row in bare.head(MOST_NOTES).to_dict("records"):
-        yield "Not computed", f"{row['case']} ({row['subject']}): {row['status']}: {row['reason']}", "bad"
-    if len(bare) > MOST_NOTES:
-        yield "Not computed", f"{len(bare) - MOST_NOTES} more are on sheet Cases.", "bad"
+    most = min(MOST_NOTES, 6)
+    for row in bare.head(most).to_dict("records"):
+        words = f"{row['case']} ({row['subject']}): {tr(STATUSES.get(row['status'], row['status']))}: {row['reason']}"
+        yield tr("Not computed"), words, "bad"
+    if len(bare) > most:
+        yield tr("Not computed"), tr("{count} more are on sheet Variants.", count=len(bare) - most), "bad"
     version = facts.run.get("versions", {}).get("tractionpower", "")
-    yield "Written", f"{datetime.now().astimezone():%Y-%m-%d %H:%M} by tractionpower {version}", "wrapped"
-    yield "Study, input hash", f"{facts.run.get('study', '')}, {facts.run.get('input_hash', '')}", "wrapped"
+    when = f"{datetime.now().astimezone():%Y-%m-%d %H:%M}"
+    yield tr("Written"), tr("{when} by tractionpower {version}", when=when, version=version), "wrapped"
+    yield tr("Study, input hash"), f"{facts.run.get('study', '')}, {facts.run.get('input_hash', '')}", "wrapped"

@@ -1,0 +1,66 @@
+"""Finish of charts: axes that fit their values, points on lines, names of series."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from openpyxl.chart.series import SeriesLabel
+
+from tractionpower.reporting.workbook.frame.cells import shorten
+from tractionpower.reporting.workbook.frame.plots import NAME_LENGTH
+
+POINTS = ("circle", "square", "triangle", "diamond", "x", "plus", "star")
+"""What tells lines apart without colour."""
+
+STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
+
+
+def fit_axis(axis: Any, values: Sequence[float], *, ticks: int = 6) -> None:
+    """Let an axis span the values in round steps; one of values near zero, or far apart, begins there."""
+    known = [value for value in values if math.isfinite(value)]
+    if not known:
+        return
+    low, high = min(known), max(known)
+    if low >= 0.0 and high > 0.0 and low < 0.35 * high:
+        low = 0.0
+    spread = high - low or abs(high) * 0.1 or 1.0
+    rough = spread / ticks
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = next(power * each for each in STEPS if power * each >= rough * 0.999)
+    axis.majorUnit = step
+    axis.scaling.min, axis.scaling.max = _round(math.floor(low / step) * step), _round(math.ceil(high / step) * step)
+    if axis.scaling.min == axis.scaling.max:
+        axis.scaling.max = _round(axis.scaling.min + step)
+
+
+def show_points(series: Any, number: int, colour: str, *, line: bool = True) -> None:
+    """Show points on a line, or instead of it."""
+    marker = series.marker
+    marker.symbol, marker.size = POINTS[number % len(POINTS)], 7
+    marker.graphicalProperties.solidFill = colour
+    marker.graphicalProperties.line.solidFill = colour
+    if not line:
+        series.graphicalProperties.line.noFill = True
+        series.graphicalProperties.line.solidFill = None
+
+
+def name_series(chart: Any, names: Sequence[str]) -> None:
+    """Give the series of a chart their names in the language of the report."""
+    for series, name in zip(chart.series, names, strict=False):
+        series.tx = SeriesLabel(v=shorten(name, NAME_LENGTH))
+
+
+def stack(chart: Any, colours: Sequence[str], *, lying: bool = False) -> None:
+    """Stack the bars of a chart in colours of their own."""
+    chart.grouping, chart.overlap = "stacked", 100
+    if lying:
+        chart.type = "bar"
+        chart.x_axis.scaling.orientation = "maxMin"  # the first row stands above
+    for series, colour in zip(chart.series, colours, strict=False):
+        series.graphicalProperties.solidFill = colour
+
+
+def _round(value: float) -> float:
+    return float(f"{value:.12g}")
