@@ -56,7 +56,7 @@ def add_charts(book: Book, data: SweepData, cases: Cases, cells: Cells, variants
         if number:
             page.new_page()
         page.chart(_by_case(variants, cases, name))
-    numeric = [k for k, path in enumerate(data.changes.columns) if _numbers(data.keys[path])] if len(data.paths) <= 5 else []
+    numeric = [k for k, path in enumerate(data.changes.columns) if _is_spread(data, cases, path)] if len(data.paths) <= 5 else []
     for k in numeric[:MOST_CLOUDS]:
         for name in shown[:2]:
             page.new_page()
@@ -86,6 +86,12 @@ def grid_of(data: SweepData, cases: Cases) -> Grid | None:
 
 def _numbers(values: Sequence[str]) -> bool:
     return all(number_of(value) is not None for value in values)
+
+
+def _is_spread(data: SweepData, cases: Cases, path: str) -> bool:
+    """Return whether the cases that have figures have several numbers for a path."""
+    own = data.changes[path][data.changes.index.isin(list(cases.words))].dropna()
+    return own.nunique() > 1 and _numbers(list(own))
 
 
 def _over_grid(page: Page, data: SweepData, cases: Cases, cells: Cells, told: tuple[list[str], Grid]) -> None:
