@@ -140,7 +140,7 @@ def test_a_dead_line_is_told_and_shaded(data):
     dark = trains.assign(voltage_v=trains["voltage_v"].where(trains["train"] != "R 101", 0.0))
     histogram = voltage_histogram(RunData(data.results, data.scenario, {"trains": dark}))
     share = 100.0 * (trains["train"] == "R 101").mean()
-    assert histogram.axes[0].get_title(loc="left").endswith(f" ({share:.2g} % of the time, without voltage, left out)")
+    assert histogram.get_suptitle().endswith(f" ({share:.2f} % of the time, without voltage, left out)")
     assert histogram.axes[0].get_xlim()[0] > 2000.0
 
 

@@ -7,7 +7,7 @@ from tractionpower.reporting.figures import of_run as figures
 from tractionpower.reporting.figures.base.style import new_figure
 from tractionpower.reporting.figures.of_run import write_figures
 
-SINGLE = {"load_duration", "substation_currents", "substation_loads", "train_graph", "voltage_along_line", "voltage_histogram"}
+SINGLE = {"load_duration", "substation_currents", "substation_loads", "substation_power", "train_graph", "voltage_along_line", "voltage_histogram"}
 TRAINS = {"trains/1", "trains/2", "trains/3%2FIC", "trains/4"}
 
 
@@ -36,6 +36,6 @@ def test_a_missing_table_leaves_its_figures_out_and_those_of_an_earlier_run_go(t
     for name in ("train_graph_fine.png", "voltage_histogram.png", "mine.png", "trains/99.png"):
         (tmp_path / name).write_bytes(b"")
     write_figures(run.without("trains", "calls"), run.scenario, tmp_path)
-    assert names(tmp_path) == {"load_duration", "substation_currents", "substation_loads", "voltage_along_line", "mine"}
+    assert names(tmp_path) == {"load_duration", "substation_currents", "substation_loads", "substation_power", "voltage_along_line", "mine"}
     write_figures(run.without("profile", "substations"), run.scenario, tmp_path)
     assert names(tmp_path) == {"train_graph", "voltage_histogram", "substation_loads", "mine"} | TRAINS

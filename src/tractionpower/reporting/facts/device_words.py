@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.texts import mark
+from tractionpower.reporting.texts import mark, tr
+from tractionpower.studies.ratings.words import window_words
 
 KINDS = {
     "unit": mark("Rectifier units"),
@@ -32,6 +33,24 @@ def counted_devices(number: int, kind: str) -> str:
         head, blank, tail = words.partition(" of ")
         words = f"{head.removesuffix('es' if head.endswith('ches') else 's')}{blank}{tail}"
     return f"{number} {words}"
+
+
+def kind_told(kind: str) -> str:
+    """Return a kind of devices in the language of the report.
+
+    >>> kind_told("rails")
+    'Rail sections'
+    """
+    return tr(KINDS.get(kind, kind))
+
+
+def window_told(seconds: float) -> str:
+    """Return the length of a window in the language of the report; 0 is the whole run.
+
+    >>> window_told(900.0), window_told(0.0)
+    ('15 min', 'whole run')
+    """
+    return window_words(seconds) if seconds > 0.0 else tr("whole run")
 
 
 def kind_order(kind: str) -> int:

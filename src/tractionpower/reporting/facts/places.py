@@ -12,6 +12,7 @@ from tractionpower.alignment.axis import tracks_at
 from tractionpower.alignment.lines import tracks_by_line
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.supply import Substation
+from tractionpower.reporting.texts import trn
 from tractionpower.supply.site import Site, survey
 
 Device = tuple[float, str, bool]
@@ -89,4 +90,4 @@ def told(tracks: Sequence[str]) -> str:
     >>> told(["1", "2"])
     'tracks 1, 2'
     """
-    return f"track{'s' if len(tracks) > 1 else ''} {', '.join(tracks)}"
+    return trn("track {tracks}", "tracks {tracks}", len(tracks), tracks=", ".join(tracks))

@@ -22,9 +22,11 @@ from tractionpower.reporting.figures.many.contingency_figures import (
     worst_utilisation,
 )
 from tractionpower.reporting.figures.many.outage_map import MAP, outage_maps
+from tractionpower.reporting.figures.supply.energy_flow import energy_flow
+from tractionpower.reporting.figures.supply.power_figures import substation_currents, substation_power
 from tractionpower.reporting.figures.supply.rail_figures import rail_potential_along_line, rail_potential_over_time
 from tractionpower.reporting.figures.supply.ratings_figures import demand, device_load_duration, sharing, utilisation
-from tractionpower.reporting.figures.supply.substation_figures import load_duration, substation_currents, substation_loads
+from tractionpower.reporting.figures.supply.substation_figures import load_duration, substation_loads
 from tractionpower.reporting.figures.supply.useful_figures import useful_voltage_zones
 from tractionpower.reporting.figures.supply.voltage_figures import voltage_along_line, voltage_histogram
 from tractionpower.reporting.figures.trains.run_graph import run_graphs
@@ -34,9 +36,11 @@ from tractionpower.results.results import Results
 SINGLE = {
     "voltage_along_line": voltage_along_line,
     "voltage_histogram": voltage_histogram,
+    "substation_power": substation_power,
     "substation_currents": substation_currents,
     "substation_loads": substation_loads,
     "load_duration": load_duration,
+    "energy_flow": energy_flow,
     "delays_by_cause": delays_by_cause,
     "lost_time": lost_time,
     "rail_potential": rail_potential_along_line,

@@ -6,10 +6,10 @@ import pytest
 from fake_runs import big_run, small_run
 
 from tractionpower.reporting.facts.run_data import RunData
+from tractionpower.reporting.figures.supply.power_figures import substation_currents, substation_power
 from tractionpower.reporting.figures.supply.substation_figures import (
     duration_curve,
     load_duration,
-    substation_currents,
     substation_loads,
 )
 from tractionpower.results.results import Results

@@ -73,13 +73,14 @@ def test_lines_are_broken_where_no_train_was(data):
 def test_a_study_with_loads_only_has_one_panel_for_all_tracks():
     scenario = make_scenario(load("one", 13.0), load("two", 4.0, "2", **{"from": 5.0}), name="Loads")
     results, _, _ = run_in_memory(scenario)
-    (axes,) = voltage_along_line(RunData(results, scenario)).axes
+    drawn = voltage_along_line(RunData(results, scenario))
+    (axes,) = drawn.axes
     profile = results.table("profile")
     assert {line.get_label() for line in axes.lines} >= {"track 1, mean", "track 2, mean", "loads"}
     one = line_named(axes, "track 1, mean")
     np.testing.assert_allclose(one.get_ydata(), profile[profile["track"] == "1"].sort_values("km")["mean_voltage_v"])
     assert "load one" in next(text.get_text() for text in axes.texts if text.get_text().startswith("lowest"))
-    assert axes.get_title(loc="left") == "Loads: voltage along the line"
+    assert drawn.get_suptitle() == "Loads: voltage along the line"
 
 
 def test_names_do_not_overlap_on_a_line_with_many_devices(no_overlap):
@@ -94,13 +95,14 @@ def test_names_do_not_overlap_on_a_line_with_many_devices(no_overlap):
 
 def test_the_histogram_shares_out_the_whole_time(data):
     trains = data.table("trains")
-    (axes,) = voltage_histogram(data).axes
+    drawn = voltage_histogram(data)
+    (axes,) = drawn.axes
     heights = [bar.get_height() for bar in axes.patches]
     assert sum(heights) == pytest.approx(100.0)
     feeding = 100.0 * (trains["current_a"] < 0.0).mean()
     half = len(heights) // 2
     assert sum(heights[half:]) == pytest.approx(feeding)
-    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    labels = [text.get_text() for text in drawn.legends[0].get_texts()]
     assert f"lowest voltage: {trains['voltage_v'].min():.0f} V" in labels
     assert axes.get_xlabel() == "voltage at the pantograph [V]"
 
@@ -109,7 +111,7 @@ def test_the_histogram_counts_from_the_end_of_the_warm_up(data):
     clock = data.scenario.clock.model_copy(update={"warm_up": 600.0})
     late = RunData(data.results, data.scenario.model_copy(update={"clock": clock}))
     rows = data.table("trains").query("time_s >= 600")
-    labels = [text.get_text() for text in voltage_histogram(late).axes[0].get_legend().get_texts()]
+    labels = [text.get_text() for text in voltage_histogram(late).legends[0].get_texts()]
     assert f"lowest voltage: {rows['voltage_v'].min():.0f} V" in labels
 
 

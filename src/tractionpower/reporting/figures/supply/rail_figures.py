@@ -13,13 +13,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tractionpower.model.limits import Limit, common_limits
+from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.facts.series import interval, peaks_kept
-from tractionpower.reporting.figures.base.axes import clock_label, mark_devices, panels_of_lines, set_clock, with_margin
-from tractionpower.reporting.figures.base.labels import LETTER, LINE, fitting
+from tractionpower.reporting.figures.base.axes import clock_label, panels_of_lines, set_clock, with_margin
+from tractionpower.reporting.figures.base.labels import fitting
 from tractionpower.reporting.figures.base.style import BLUE, COLOURS, DASHES, GREEN, GREY, INK, SKY, STYLE, VERMILION, new_figure
+from tractionpower.reporting.figures.supply.km_axis import MOST_LETTERS, ROW, name_devices, name_stations
+from tractionpower.reporting.figures.supply.panels import PAGE, SMALL, head, legend_below, once, shortened
+from tractionpower.reporting.texts import number, recorded, tr
 
-WIDTH = 10.5
+INCHES = PAGE - 1.4
+"""Width of a panel [inches]."""
+
 MOST_TRACKS = 4
 """With more return conductors, those with the highest potentials are shown."""
 
@@ -49,11 +55,12 @@ def rail_potential_along_line(data: RunData) -> Figure | None:
     )
     tracks = [track for line in lines for track in line]
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 1.2 + len(lines) + (3.2 if len(tracks) == 1 else 2.5) * len(tracks))
+        figure = new_figure(PAGE, 1.4 + 0.9 * len(lines) + (2.6 if len(tracks) == 1 else 2.0) * len(tracks))
         panels = dict(zip(tracks, panels_of_lines(figure, lines), strict=True))
         for track, axes in panels.items():
             _draw_profile(axes, profile[profile["track"] == track].sort_values("km", kind="stable"))
-            axes.set_ylabel(f"{_told(track)}\nrail potential [V]")
+            axes.tick_params(labelsize=8)
+            axes.set_ylabel(tr("{tracks}\nrail potential [V]", tracks=_told(track)), fontsize=8)
         low, high = float(profile["lowest_potential_v"].min()), float(profile["highest_potential_v"].max())
         peaks = _peaks_under_trains(data)
         low, high = min([low, *(value for *_, value in peaks)]), max([high, *(value for *_, value in peaks)])
@@ -62,11 +69,11 @@ def rail_potential_along_line(data: RunData) -> Figure | None:
             panels[line[0]].set_xlim(*with_margin(*data.places.span(profile, line)))
             for track in line:
                 _draw_limits(panels[track], _limits(data))
-                mark_devices(panels[track], _devices(data, track), WIDTH - 1.4, names=track == line[0])
+                name_devices(panels[track], _devices(data, track), INCHES, names=track == line[0])
                 _mark_peaks(panels[track], peaks, track)
-            _name_stations(panels[line[-1]], data, line).set_xlabel("kilometre of the line [km]")
-        figure.suptitle(f"{data.title}: rail potential along the line{_outside(data, low, high)}", x=0.01, ha="left", fontsize=11)
-        figure.legend(*_once(list(panels.values())), loc="outside lower center", ncols=4, fontsize=8)
+            name_stations(panels[line[-1]], data.places.stations(_tracks(line)), INCHES)
+        head(figure, tr("{study}: rail potential along the line", study=data.title) + _outside(data, low, high))
+        legend_below(figure, *once(panels.values()), 3)
         return figure
 
 
@@ -75,16 +82,16 @@ def _draw_profile(axes: Axes, rows: pd.DataFrame) -> None:
     low, mean, high = (rows[f"{which}_potential_v"].to_numpy(float) for which in ("lowest", "mean", "highest"))
     axes.axhline(0.0, color=INK, linewidth=0.7, zorder=1.2)
     axes.fill_between(km, low, high, color=SKY, alpha=0.22, lw=0)
-    axes.plot(km, high, color=VERMILION, linewidth=1.3, label="highest")
+    axes.plot(km, high, color=VERMILION, linewidth=1.3, label=tr("highest"))
     dashes: Any = (0, (4, 2))
-    axes.plot(km, mean, color=GREEN, linewidth=1.3, linestyle=dashes, label="mean over the run")
-    axes.plot(km, low, color=BLUE, linewidth=1.3, label="lowest")
+    axes.plot(km, mean, color=GREEN, linewidth=1.3, linestyle=dashes, label=tr("mean over the run"))
+    axes.plot(km, low, color=BLUE, linewidth=1.3, label=tr("lowest"))
 
 
 def _limits(data: RunData) -> list[tuple[str, Limit]]:
     """Return the touch voltages that steps of a second can meet, with their duration in words."""
     named = common_limits(data.scenario.limits, data.scenario.supply.system, "touch_")
-    return [(words, named[name]) for name, words in ((PERMANENT, "permanent"), (SHORTER, "300 s")) if name in named]
+    return [(words, named[name]) for name, words in ((PERMANENT, tr("permanent")), (SHORTER, "300 s")) if name in named]
 
 
 def _room(low: float, high: float, limits: Sequence[tuple[str, Limit]]) -> tuple[float, float]:
@@ -108,34 +115,39 @@ def _draw_limits(axes: Axes, limits: Sequence[tuple[str, Limit]]) -> None:
             value = sign * limit.value
             if bottom < value < top:
                 style: Any = {"color": GREY, "linewidth": 1.0, "linestyle": dashes, "zorder": 1.5}
-                axes.axhline(value, label=f"touch voltage, {words} ({limit.status} value)", **style)
+                axes.axhline(value, label=_limit_told(words, limit), **style)
                 axes.annotate(
                     f"{_volts(value, 0)}, {words}", (1.0, value), (3, 0), xycoords=("axes fraction", "data"),
                     textcoords="offset points", ha="left", va=above if sign > 0 else below, color=INK, fontsize=7,
                 )  # fmt: skip
 
 
+def _limit_told(words: str, limit: Limit) -> str:
+    return tr("touch voltage, {duration} ({status} value)", duration=words, status=recorded(limit.status))
+
+
 def _volts(value: float, digits: int = 1) -> str:
-    return f"{round(value, digits) + 0.0:.{digits}f} V".replace("-", "\N{MINUS SIGN}")
+    return f"{number(value, digits, bare=False)} V".replace("-", "\N{MINUS SIGN}")
 
 
 def _outside(data: RunData, low: float, high: float) -> str:
     """Return in words that the permanent limit is beyond the axis, where it is."""
-    limit = dict(_limits(data)).get("permanent")
+    limit = next((limit for _, limit in _limits(data) if limit.name == PERMANENT), None)
     if limit is None or max(high, -low) >= NEAR * limit.value:
         return ""
-    return f" (permanent touch voltage, ±{limit.value:g} V, lies outside)"
+    return tr(" (permanent touch voltage, ±{volts} V, lies outside)", volts=number(limit.value))
 
 
 def _peaks_under_trains(data: RunData) -> list[tuple[str, float, str, float]]:
     """Return track, kilometre, words and value [V] of the extremes of the run that were under a train."""
     found = []
     for name in ("lowest_rail_potential_v", "highest_rail_potential_v"):
-        for (key, place), told in data.key_figures.items():
+        for (key, place), entry in data.key_figures.items():
             match = _AT_TRAIN.fullmatch(place)
-            if key == name and match and told["value"] is not None:
-                words = f"{_volts(told['value'])}, {place.split(', track')[0]}, {told['time']}"
-                found.append((match[1], float(match[2]), words, float(told["value"])))
+            if key == name and match and entry["value"] is not None:
+                train = shortened(recorded(place.split(", track")[0]), MOST_LETTERS + 8)
+                words = f"{_volts(entry['value'])}, {train}, {entry['time']}"
+                found.append((match[1], float(match[2]), words, float(entry["value"])))
     return found
 
 
@@ -143,10 +155,10 @@ def _mark_peaks(axes: Axes, peaks: Sequence[tuple[str, float, str, float]], trac
     for track, km, words, volts in peaks:
         if track in tracks.split():
             left = km < sum(axes.get_xlim()) / 2
-            axes.plot(km, volts, "D", color=INK, markersize=4, zorder=4, linestyle="none", label="extreme, under a train")
+            axes.plot(km, volts, "D", color=INK, markersize=4, zorder=4, linestyle="none", label=tr("extreme, under a train"))
             axes.annotate(
                 words, (km, volts), (4 if left else -4, 6 if volts > 0 else -6), textcoords="offset points",
-                ha="left" if left else "right", va="bottom" if volts > 0 else "top", fontsize=7.5, color=INK, zorder=5,
+                ha="left" if left else "right", va="bottom" if volts > 0 else "top", fontsize=SMALL, color=INK, zorder=5,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85},
             )  # fmt: skip
 
@@ -159,18 +171,20 @@ def rail_potential_over_time(data: RunData) -> Figure | None:
     lines = data.places.by_line(_chosen(rails.assign(peak=rails["potential_v"].abs()), "peak"))
     maps = {track: grid for line in lines for track in line if len(grid := _grid(rails, track)) > 1}
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 4.6 + 2.3 * len(maps))
+        figure = new_figure(PAGE, 3.2 + 1.9 * len(maps))
         ratios = [1.25, *([1.0] * len(maps))]
         panels = list(figure.subplots(1 + len(maps), sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
         _draw_worst(panels[0], data, rails)
         if maps:
             _draw_maps(figure, panels[1:], data, maps)
         times = rails["time_s"]
-        set_clock(panels[0], float(times.min()), float(times.max()))
+        set_clock(panels[0], float(times.min()), float(times.max()), 8)
         panels[0].set_xlim(float(times.min()), float(times.max()))
-        panels[-1].set_xlabel(clock_label(panels[0]))
+        panels[-1].set_xlabel(clock_label(panels[0]), fontsize=8)
         every = interval(np.unique(times))
-        figure.suptitle(f"{data.title}: rail potential over time, one step in every {every:g} s", x=0.01, ha="left", fontsize=11)
+        for axes in panels:
+            axes.tick_params(labelsize=8)
+        head(figure, tr("{study}: rail potential over time, one step in every {every} s", study=data.title, every=number(every)))
         return figure
 
 
@@ -197,20 +211,21 @@ def worst_places(rails: pd.DataFrame, number_of: Callable[[str], int] = lambda _
 def _draw_worst(axes: Axes, data: RunData, rails: pd.DataFrame) -> None:
     low = high = 0.0
     axes.axhline(0.0, color=INK, linewidth=0.7)
-    for number, (track, km) in enumerate(worst_places(rails, data.places.number_of)):
+    for row, (track, km) in enumerate(worst_places(rails, data.places.number_of)):
         own = rails[(rails["track"] == track) & (rails["km"] == km)].sort_values("time_s", kind="stable")
         volts = own["potential_v"].to_numpy(float)
         shown = peaks_kept(volts, POINTS)
-        style: Any = {"color": COLOURS[number], "linestyle": DASHES[number], "linewidth": 1.1}
-        label = f"{_told(track)}, km {km:.2f}: {_volts(np.nanmin(volts))} to {_volts(np.nanmax(volts))}"
+        style: Any = {"color": COLOURS[row], "linestyle": DASHES[row], "linewidth": 1.0}
+        ends = {"lowest": _volts(float(np.nanmin(volts))), "highest": _volts(float(np.nanmax(volts)))}
+        label = tr("{tracks}, km {km}: {lowest} to {highest}", tracks=_told(track), km=number(km, 2, bare=False), **ends)
         axes.plot(own["time_s"].to_numpy()[shown], volts[shown], label=label, **style)
         low, high = min(low, float(np.nanmin(volts))), max(high, float(np.nanmax(volts)))
     axes.set_ylim(*_room(low, high, _limits(data)))
     _draw_limits(axes, _limits(data))
-    axes.set_ylabel("rail potential [V]\nat the worst places")
+    axes.set_ylabel(tr("rail potential [V]\nat the worst places"), fontsize=8)
     handles, labels = axes.get_legend_handles_labels()
     unique = dict(zip(labels, handles, strict=True))
-    axes.legend(unique.values(), unique.keys(), loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=8)
+    axes.legend(unique.values(), unique.keys(), loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=SMALL)
 
 
 def _grid(rails: pd.DataFrame, track: str) -> pd.DataFrame:
@@ -229,11 +244,11 @@ def _draw_maps(figure: Figure, panels: Sequence[Axes], data: RunData, maps: dict
             cmap="RdBu_r", vmin=-most, vmax=most, shading="nearest", rasterized=True,
         )  # fmt: skip
         axes.grid(visible=False)
-        axes.set_ylabel(f"{_told(track)}\nkilometre [km]")
+        axes.set_ylabel(tr("{tracks}\nkilometre [km]", tracks=_told(track)), fontsize=8)
         axes.set_ylim(float(grid.index[0]), float(grid.index[-1]))
         _name_devices(axes, _devices(data, track))
     bar = figure.colorbar(drawn, ax=list(panels), location="bottom", shrink=0.5, aspect=45, pad=0.02)
-    bar.set_label("rail potential against remote earth [V]", fontsize=8)
+    bar.set_label(tr("rail potential against remote earth [V]"), fontsize=8)
     bar.ax.tick_params(labelsize=8)
 
 
@@ -241,32 +256,15 @@ def _name_devices(axes: Axes, devices: Sequence[tuple[float, str, bool]]) -> Non
     """Draw lines at substations and section cabins of a map and name substations right of it."""
     low, high = axes.get_ylim()
     inside = [device for device in devices if low <= device[0] <= high]
-    shown = fitting([at for at, _, _ in inside], [station for *_, station in inside], LINE * (high - low) / 1.9)
+    shown = fitting([at for at, _, _ in inside], [station for *_, station in inside], 1.05 * ROW * (high - low) / 1.5)
     for at in (at for at, _, substation in inside if substation):
         axes.axhline(at, color=INK, linewidth=0.4, alpha=0.5)
     for k in shown:
         at, name, substation = inside[k]
         axes.annotate(
-            f"{'▲' if substation else '■'} {name}", (1.0, at), (3, 0), xycoords=("axes fraction", "data"),
+            f"{'▲' if substation else '■'} {shortened(name, 14)}", (1.0, at), (3, 0), xycoords=("axes fraction", "data"),
             textcoords="offset points", ha="left", va="center", fontsize=7, color=INK,
         )  # fmt: skip
-
-
-def _name_stations(axes: Axes, data: RunData, line: Sequence[str]) -> Any:
-    """Name the stations below the axes and return what stands lowest; names that would overlap stand upright, and some go."""
-    low, high = axes.get_xlim()
-    stations = [each for each in data.places.stations(_tracks(line)) if low <= each[0] <= high]
-    if not stations:
-        return axes
-    per_inch, places = (high - low) / (WIDTH - 1.4), [km for km, _ in stations]
-    level = fitting(places, [False] * len(places), [(len(name) + 2) * LETTER * per_inch for _, name in stations])
-    upright = len(level) < len(stations)
-    shown = fitting(places, [False] * len(places), LINE * per_inch) if upright else level
-    bottom = axes.secondary_xaxis(0.0)
-    bottom.set_xticks([places[k] for k in shown], [stations[k][1] for k in shown], rotation=90 if upright else 0)
-    bottom.tick_params(direction="in", length=5, pad=17, labelsize=7.5, colors=INK, color=INK)
-    bottom.spines["bottom"].set_visible(False)
-    return bottom
 
 
 def _chosen(rows: pd.DataFrame, column: str) -> list[str]:
@@ -276,7 +274,7 @@ def _chosen(rows: pd.DataFrame, column: str) -> list[str]:
 
 
 def _told(tracks: str) -> str:
-    return f"track{'s' if ' ' in tracks else ''} {tracks.replace(' ', ', ')}"
+    return told(tracks.split())
 
 
 def _devices(data: RunData, tracks: str) -> list[tuple[float, str, bool]]:
@@ -286,12 +284,3 @@ def _devices(data: RunData, tracks: str) -> list[tuple[float, str, bool]]:
 def _tracks(conductors: Sequence[str]) -> set[str]:
     """Return the tracks of return conductors, each named by its tracks."""
     return {*conductors, *(track for conductor in conductors for track in conductor.split())}
-
-
-def _once(panels: Sequence[Axes]) -> tuple[list[Any], list[str]]:
-    """Return handles and labels of all panels, each once."""
-    found: dict[str, Any] = {}
-    for axes in panels:
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            found.setdefault(label, handle)
-    return list(found.values()), list(found)

@@ -13,13 +13,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from tractionpower.reporting.facts.device_words import (
-    KINDS,
     kind_order,
+    kind_told,
     supply_points_along_line,
+    window_told,
     zones_along_line,
 )
 from tractionpower.reporting.facts.run_data import RunData
-from tractionpower.reporting.figures.base.axes import clock_label, set_clock
 from tractionpower.reporting.figures.base.style import (
     BLUE,
     COLOURS,
@@ -32,13 +32,16 @@ from tractionpower.reporting.figures.base.style import (
     VERMILION,
     new_figure,
 )
-from tractionpower.studies.ratings.words import window_words
-
-WIDTH = 8.3
-"""Width of the figures that stand upright on A4 [inches]."""
-
-WIDE = 11.7
-"""Width of the figures that lie on A4 [inches]."""
+from tractionpower.reporting.figures.supply.panels import (
+    PAGE,
+    SMALL,
+    head,
+    legend_below,
+    most_loaded,
+    shortened,
+    time_panels,
+)
+from tractionpower.reporting.texts import number, tr
 
 MOST_BARS = 56
 """Bars of one figure; with more devices, those of each kind with the highest utilisation are shown."""
@@ -47,6 +50,13 @@ FEWEST_BARS = 5
 """Devices of a kind that are shown at least."""
 
 MOST_CURVES = 12
+
+MOST_LETTERS = 34
+"""Letters of a name."""
+
+MOST_ZONES = 30
+"""Zones of the figure of load sharing; with more, those with the highest currents are shown."""
+
 TIGHT_PERCENT = 80.0
 """From here on a utilisation shows amber [%]."""
 
@@ -72,17 +82,19 @@ def utilisation(data: RunData) -> Figure | None:
     heights = [len(own) + 2.0 for _, own, _ in shown]
     permitted = data.scenario.sizing.utilisation_percent
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 1.5 + BAR * sum(heights))
+        figure = new_figure(PAGE, 1.2 + BAR * sum(heights))
         panels = figure.subplots(len(shown), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
         highest = max(float(rows["utilisation_percent"].max()), permitted)
         for axes, (kind, own, every) in zip(panels, shown, strict=True):
             _draw_utilisation(axes, own, permitted)
-            more = f": the {len(own)} with the highest utilisation of {every}" if len(own) < every else ""
-            axes.set_title(f"{KINDS.get(kind, kind)}{more}", loc="left", fontsize=8.5, pad=3)
-        panels[0].set_xlim(0.0, 1.16 * highest)
-        panels[-1].set_xlabel("utilisation of what the rating permits in the window that rules [%]")
-        figure.legend(handles=_margins(permitted), loc="outside lower center", ncols=4, fontsize=8)
-        figure.suptitle(f"{data.title}: utilisation of the devices", x=0.01, ha="left", fontsize=11)
+            more = tr(": the {shown} with the highest utilisation of {every}", shown=len(own), every=every)
+            axes.set_title(kind_told(kind) + (more if len(own) < every else ""), loc="left", fontsize=8, pad=3)
+        panels[0].set_xlim(0.0, 1.25 * highest)
+        panels[-1].set_xlabel(tr("utilisation of what the rating permits in the window that rules [%]"), fontsize=8)
+        panels[-1].tick_params(axis="x", labelsize=8)
+        margins = _margins(permitted)
+        legend_below(figure, margins, [handle.get_label() for handle in margins])
+        head(figure, tr("{study}: utilisation of the devices", study=data.title))
         return figure
 
 
@@ -107,10 +119,11 @@ def margin_colour(percent: float, permitted: float) -> str:
 
 def _margins(permitted: float) -> list[Any]:
     tight = TIGHT_PERCENT / 100.0 * permitted
+    low, high = number(tight), number(permitted)
     return [
-        Patch(color=GREEN, label=f"up to {tight:g} %"),
-        Patch(color=ORANGE, label=f"{tight:g} to {permitted:g} %"),
-        Patch(color=VERMILION, label=f"more than the permitted {permitted:g} %"),
+        Patch(color=GREEN, label=tr("up to {percent} %", percent=low)),
+        Patch(color=ORANGE, label=tr("{low} to {high} %", low=low, high=high)),
+        Patch(color=VERMILION, label=tr("more than the permitted {percent} %", percent=high)),
     ]
 
 
@@ -118,10 +131,10 @@ def _draw_utilisation(axes: Axes, rows: pd.DataFrame, permitted: float) -> None:
     values = rows["utilisation_percent"].to_numpy(float)
     place = np.arange(len(rows), dtype=float)
     drawn = axes.barh(place, values, 0.72, color=[margin_colour(value, permitted) for value in values])
-    texts = [f"{value:.0f} %, {window_words(window)}" for value, window in zip(values, rows["window_s"], strict=True)]
-    axes.bar_label(drawn, texts, padding=2, fontsize=7, color=INK, bbox=BARE)
+    texts = [f"{number(value, 0)} %, {window_told(window)}" for value, window in zip(values, rows["window_s"], strict=True)]
+    axes.bar_label(drawn, texts, padding=2, fontsize=SMALL, color=INK, bbox=BARE)
     axes.axvline(permitted, color=INK, linewidth=0.9, linestyle=(0, (5, 3)))
-    axes.set_yticks(place, rows["device"].astype(str), fontsize=7)
+    axes.set_yticks(place, [shortened(str(name), MOST_LETTERS) for name in rows["device"]], fontsize=SMALL)
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_axisbelow(True)
     axes.grid(visible=False, axis="y")
@@ -134,35 +147,36 @@ def device_load_duration(data: RunData) -> Figure | None:
     if rows is None:
         return None
     groups = [
-        ("Substations", rows[rows["kind"] == "substation"]),
-        ("Feeders and cabin feeders", rows[rows["kind"].isin(["feeder", "cabin_feeder"])]),
-        ("Contact-line sections", rows[rows["kind"] == "contact_line"]),
+        (tr("Substations"), rows[rows["kind"] == "substation"]),
+        (tr("Feeders and cabin feeders"), rows[rows["kind"].isin(["feeder", "cabin_feeder"])]),
+        (tr("Contact-line sections"), rows[rows["kind"] == "contact_line"]),
     ]
     groups = [(words, own) for words, own in groups if len(own)]
     if not groups:
         return None
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDE, 0.9 + 3.3 * len(groups))
+        figure = new_figure(PAGE, 0.8 + 3.1 * len(groups))
         panels = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
         for axes, (words, own) in zip(panels, groups, strict=True):
             every, shown = _draw_durations(axes, own)
-            more = f": the {shown} with the highest currents of {every}" if shown < every else ""
-            axes.set_title(f"{words}{more}", loc="left", fontsize=9)
-            axes.set_ylabel("current at least [A]")
-            axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.02), fontsize=7.5, handlelength=3.0)
+            more = tr(": the {shown} with the highest currents of {every}", shown=shown, every=every)
+            axes.set_title(words + (more if shown < every else ""), loc="left", fontsize=8)
+            axes.set_ylabel(tr("current at least [A]"), fontsize=8)
+            axes.tick_params(labelsize=8)
+            axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.04), fontsize=SMALL, handlelength=2.8)
         panels[0].set_xlim(0.0, 100.0)
-        panels[-1].set_xlabel("share of the run [%]")
-        figure.suptitle(f"{data.title}: load duration of the devices", x=0.01, ha="left", fontsize=11)
+        panels[-1].set_xlabel(tr("share of the run [%]"), fontsize=8)
+        head(figure, tr("{study}: load duration of the devices", study=data.title))
         return figure
 
 
 def _draw_durations(axes: Axes, rows: pd.DataFrame) -> tuple[int, int]:
     """Draw the devices with the highest currents; return how many there are and how many are shown."""
     highest = rows.groupby(rows["device"].astype(str))["current_a"].max().sort_values(ascending=False, kind="stable")
-    for number, (device, peak) in enumerate(highest.head(MOST_CURVES).items()):
+    for row, (device, peak) in enumerate(highest.head(MOST_CURVES).items()):
         own = rows[rows["device"] == device].sort_values("share_percent", kind="stable")
-        style: Any = {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number // len(COLOURS) % len(DASHES)]}
-        axes.plot(own["share_percent"], own["current_a"], linewidth=1.3, label=f"{device}: {peak:.0f} A", **style)
+        style: Any = {"color": COLOURS[row % len(COLOURS)], "linestyle": DASHES[row // len(COLOURS) % len(DASHES)]}
+        axes.plot(own["share_percent"], own["current_a"], linewidth=1.2, label=f"{shortened(str(device), 24)}: {number(peak, 0)} A", **style)
     axes.set_ylim(0.0, None)
     return len(highest), min(len(highest), MOST_CURVES)
 
@@ -174,38 +188,43 @@ def sharing(data: RunData) -> Figure | None:
         return None
     both = rows.groupby(rows["zone"].astype(str), sort=False)["substation"].agg(list)
     zones = zones_along_line(data.scenario, {str(zone): names for zone, names in both.items()})
+    every = len(zones)
+    highest = rows.groupby(rows["zone"].astype(str))["highest_current_a"].max()
+    zones = [zones[k] for k in most_loaded([float(highest[zone]) for zone in zones], MOST_ZONES)]
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDE, 1.5 + 0.3 * len(zones))
+        figure = new_figure(PAGE, 1.3 + 0.27 * len(zones))
         shares, currents = figure.subplots(1, 2, sharey=True)
-        for number, zone in enumerate(zones):
-            _draw_zone(shares, currents, rows[rows["zone"] == zone], number)
-        shares.set_yticks(range(len(zones)), zones, fontsize=7.5)
+        for row, zone in enumerate(zones):
+            _draw_zone(shares, currents, rows[rows["zone"] == zone], row)
+        shares.set_yticks(range(len(zones)), [shortened(zone, MOST_LETTERS) for zone in zones], fontsize=SMALL)
         shares.set_ylim(len(zones) - 0.4, -0.6)
         shares.axvline(50.0, color=INK, linewidth=0.8, linestyle=(0, (5, 3)))
         shares.set_xlim(min(0.0, *shares.get_xlim()), max(100.0, shares.get_xlim()[1]))
-        shares.set_xlabel("share of the mean current of the zone [%]")
-        currents.set_xlabel("mean current (bar), highest mean of a step (dash) [A]")
+        shares.set_xlabel(tr("share of the mean current\nof the zone [%]"), fontsize=8)
+        currents.set_xlabel(tr("mean current (bar), highest\nmean of a step (dash) [A]"), fontsize=8)
         for axes in (shares, currents):
+            axes.tick_params(axis="x", labelsize=8)
             axes.grid(visible=False, axis="y")
             axes.set_axisbelow(True)
-        handles = [Patch(color=BLUE, label="first substation of the zone"), Patch(color=ORANGE, label="second substation")]
-        figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8)
-        figure.suptitle(f"{data.title}: load sharing of neighbouring substations", x=0.01, ha="left", fontsize=11)
+        labels = [tr("first substation of the zone"), tr("second substation")]
+        legend_below(figure, [Patch(color=BLUE), Patch(color=ORANGE)], labels)
+        more = tr(", the {shown} most loaded of {every} zones", shown=len(zones), every=every) if len(zones) < every else ""
+        head(figure, tr("{study}: load sharing of neighbouring substations", study=data.title) + more)
         return figure
 
 
-def _draw_zone(shares: Axes, currents: Axes, rows: pd.DataFrame, number: int) -> None:
+def _draw_zone(shares: Axes, currents: Axes, rows: pd.DataFrame, line: int) -> None:
     """Draw the zone of a row: the shares in one bar, the currents of the two below each other."""
     left = 0.0
     for k, (row, colour) in enumerate(zip(rows.to_dict("records"), (BLUE, ORANGE), strict=False)):
         share, highest = float(row["share_percent"]), float(row["highest_current_a"])
         if np.isfinite(share):
             left = left if share > 0.0 else 0.0
-            shares.barh(number, share, 0.7, left=left, color=colour)
-            style: Any = {"ha": "center", "va": "center", "color": "white" if colour == BLUE else INK, "fontsize": 7}
-            shares.text(left + share / 2, number, f"{share:.0f} %", **style)
+            shares.barh(line, share, 0.7, left=left, color=colour)
+            style: Any = {"ha": "center", "va": "center", "color": "white" if colour == BLUE else INK, "fontsize": SMALL}
+            shares.text(left + share / 2, line, f"{number(share, 0)} %", **style)
             left += max(share, 0.0)
-        at = number + 0.36 * (k - 0.5)
+        at = line + 0.36 * (k - 0.5)
         currents.barh(at, np.nan_to_num(float(row["mean_current_a"])), 0.32, color=colour)
         currents.plot([highest] * 2, [at - 0.15, at + 0.15], color=colour, linewidth=1.6)
 
@@ -216,25 +235,20 @@ def demand(data: RunData) -> Figure | None:
     if rows is None:
         return None
     points = supply_points_along_line(data.scenario, rows["supply_point"].astype(str))
-    columns = 1 if len(points) <= 3 else 2 if len(points) <= 16 else 3
-    lines = -(-len(points) // columns)
+    highest = rows.groupby(rows["supply_point"].astype(str))["power_kw"].max()
+    every = len(points)
+    points = [points[k] for k in most_loaded([float(highest[point]) for point in points])]
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDE, max(4.0, 1.3 + (1.9 if columns == 1 else 1.15) * lines), 0.05)
-        grid = figure.subplots(lines, columns, sharex=True, sharey=True, squeeze=False)
-        panels = grid.T.ravel()
+        figure, panels = time_panels(len(points), float(rows["from_s"].min()), float(rows["from_s"].max()) + QUARTER_S)
         for axes, name in zip(panels, points, strict=False):
             _draw_demand(axes, rows[rows["supply_point"] == name].sort_values("from_s", kind="stable"), name)
-        for axes in panels[len(points) :]:
-            axes.set_frame_on(False)
-            axes.grid(visible=False)
-            axes.tick_params(left=False, labelleft=False)
-        _clock(grid, float(rows["from_s"].min()), float(rows["from_s"].max()) + QUARTER_S, columns)
-        figure.supylabel("mean power of a quarter of an hour by the clock [MW]", fontsize=9)
-        figure.suptitle(f"{data.title}: demand of the supply points", x=0.01, ha="left", fontsize=11)
-        handles: list[Any] = [Patch(color=SKY, label="demand")]
+        figure.supylabel(tr("mean power of a quarter of an hour by the clock [MW]"), fontsize=8)
+        more = tr(", the {shown} most loaded of {every}", shown=len(points), every=every) if len(points) < every else ""
+        head(figure, tr("{study}: demand of the supply points", study=data.title) + more)
+        handles: list[Any] = [Patch(color=SKY, label=tr("demand"))]
         if rows["contract_power_kw"].notna().any():
-            handles += [Patch(color=VERMILION, label="beyond the contract"), Line2D([], [], label="contract", **CONTRACT)]
-        figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=8)
+            handles += [Patch(color=VERMILION, label=tr("beyond the contract")), Line2D([], [], label=tr("contract"), **CONTRACT)]
+        legend_below(figure, handles, [str(handle.get_label()) for handle in handles])
         return figure
 
 
@@ -245,22 +259,17 @@ QUARTER_S = 900.0
 """A quarter of an hour [s]."""
 
 
-def _clock(grid: Any, begin: float, end: float, columns: int) -> None:
-    set_clock(grid[0, 0], begin, end, 10 if columns == 1 else 7)
-    grid[0, 0].set_xlim(begin, end)
-    for axes in grid[-1]:
-        axes.set_xlabel(clock_label(grid[0, 0]))
-
-
 def _draw_demand(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     power, contract = rows["power_kw"].to_numpy(float) / 1000.0, rows["contract_power_kw"].to_numpy(float) / 1000.0
     starts = rows["from_s"].to_numpy(float)
     beyond = power > np.where(np.isnan(contract), np.inf, contract)
     axes.bar(starts, np.nan_to_num(power), QUARTER_S, align="edge", color=[VERMILION if over else SKY for over in beyond])
-    title = f"{name}: highest {np.nanmax(power):.2f} MW" if np.isfinite(power).any() else name
+    title = name = shortened(name, MOST_LETTERS - 10)
+    if np.isfinite(power).any():
+        title = tr("{name}: highest {power} MW", name=name, power=number(np.nanmax(power), 2, bare=False))
     if np.isfinite(contract).any():
         # over the whole width: demand by the clock leaves out what is no whole quarter of an hour
         axes.axhline(float(np.nanmax(contract)), zorder=3.0, **CONTRACT)
-        title += f", contract {np.nanmax(contract):.2f} MW"
+        title += tr(", contract {power} MW", power=number(np.nanmax(contract), 2, bare=False))
     axes.set_axisbelow(True)
-    axes.set_title(title, loc="left", fontsize=8, pad=3)
+    axes.set_title(title, loc="left", fontsize=SMALL, pad=3)

@@ -12,15 +12,16 @@ from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 
 from tractionpower.reporting.facts.run_data import RunData
-from tractionpower.reporting.figures.base.style import GREY, STYLE, VERMILION, new_figure
+from tractionpower.reporting.figures.base.style import INK, STYLE, VERMILION, new_figure
+from tractionpower.reporting.figures.supply.panels import PAGE, SMALL, head, shortened
+from tractionpower.reporting.texts import mark, number, tr
 
 DEFINITIONS = {
-    "current_weighted_v": "Weighted by the currents of the trains",
-    "time_mean_v": "Mean over time of all trains in the zone",
+    "current_weighted_v": mark("Weighted by the currents of the trains"),
+    "time_mean_v": mark("Mean over time of all trains in the zone"),
 }
 """The two definitions by column, and how they are told."""
 
-WIDE = 11.7
 CLASSES_V = (2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0)
 """Widths of a class of colours to choose from [V]."""
 
@@ -28,8 +29,13 @@ MOST_CLASSES = 10
 MOST_ZONES = 26
 """Zones of a figure; with more, those with the lowest voltages are shown."""
 
-NUMBERS_UP_TO = 26
-"""Columns up to which numbers stand in the cells."""
+NUMBERS_UP_TO = 13
+"""Columns up to which numbers stand level in the cells; in more columns they stand upright."""
+
+UPRIGHT_UP_TO = 27
+
+MOST_LETTERS = 30
+"""Letters of a name."""
 
 
 def useful_voltage_zones(data: RunData) -> Figure | None:
@@ -46,24 +52,27 @@ def useful_voltage_zones(data: RunData) -> Figure | None:
     limit = float(rows["limit_v"].max())
     classes = colour_classes(rows[list(DEFINITIONS)].to_numpy(float))
     with mpl.rc_context(STYLE | {"axes.grid": False}):
-        figure = new_figure(WIDE, 1.4 + 2 * (0.5 + 0.2 * len(zones)))
+        row = 0.17 if len(hours) < NUMBERS_UP_TO else 0.29
+        figure = new_figure(PAGE, 1.5 + 2 * (0.3 + row * len(zones)))
         panels = list(figure.subplots(2, 1, sharex=True))
         for axes, (name, words) in zip(panels, DEFINITIONS.items(), strict=True):
             mesh = _draw(axes, _grid(rows, name, zones, hours), zones, classes, limit)
-            axes.set_title(words, loc="left", fontsize=9)
+            axes.set_title(tr(words), loc="left", fontsize=8)
         _label_hours(panels[-1], hours)
-        bar = figure.colorbar(mesh, ax=panels, shrink=0.8, pad=0.01)
-        bar.set_label("mean useful voltage [V]")
-        more = f", the {len(zones)} lowest of {every} zones" if len(zones) < every else ""
-        held = f"; marked: below {limit:g} V" if np.isfinite(limit) else ""
-        figure.suptitle(f"{data.title}: mean useful voltage of the zones{more}{held}", x=0.01, ha="left", fontsize=11)
+        bar = figure.colorbar(mesh, ax=panels, location="bottom", shrink=0.8, aspect=45, pad=0.02)
+        bar.set_label(tr("mean useful voltage [V]"), fontsize=8)
+        bar.ax.tick_params(labelsize=SMALL)
+        more = tr(", the {shown} lowest of {every} zones", shown=len(zones), every=every) if len(zones) < every else ""
+        held = tr("; marked red: below {volts} V", volts=number(limit)) if np.isfinite(limit) else ""
+        head(figure, tr("{study}: mean useful voltage of the zones", study=data.title) + more + held)
         return figure
 
 
 def _zones(rows: pd.DataFrame) -> tuple[list[str], int]:
     """Return the zones to show in the order of the table, and how many there are."""
-    names = list(dict.fromkeys(rows["subject"].astype(str)))
-    lowest = rows.groupby(rows["subject"].astype(str))["current_weighted_v"].min()
+    valued = rows[rows[list(DEFINITIONS)].notna().any(axis=1)]  # where no train was there is nothing to show
+    names = list(dict.fromkeys(valued["subject"].astype(str)))
+    lowest = valued.groupby(valued["subject"].astype(str))["current_weighted_v"].min()
     kept = set(lowest.sort_values(kind="stable").head(MOST_ZONES).index)
     return [name for name in names if name in kept], len(names)
 
@@ -90,13 +99,14 @@ def _draw(axes: Axes, volts: Any, zones: list[str], classes: Any, limit: float) 
     mesh = axes.pcolormesh(np.arange(volts.shape[1] + 1), np.arange(len(zones) + 1), volts, cmap=colours, norm=norm)
     axes.set_facecolor("#eeeeee")
     axes.axvline(volts.shape[1] - 1, color="white", linewidth=3.0)
-    for row, column in np.argwhere(np.isfinite(volts)) if volts.shape[1] <= NUMBERS_UP_TO else ():
+    for row, column in np.argwhere(np.isfinite(volts)) if volts.shape[1] <= UPRIGHT_UP_TO else ():
         value = volts[row, column]
-        style: Any = {"color": text_colour(colours(norm(value))), "fontsize": 6.5, "ha": "center", "va": "center"}
+        style: Any = {"color": text_colour(colours(norm(value))), "fontsize": SMALL, "ha": "center", "va": "center"}
+        style["rotation"] = 0 if volts.shape[1] <= NUMBERS_UP_TO else 90
         if value < limit:
             style["color"], style["bbox"] = "white", {"facecolor": VERMILION, "edgecolor": "none", "pad": 1.0}
-        axes.text(column + 0.5, row + 0.5, f"{value:.0f}", **style)
-    axes.set_yticks(np.arange(len(zones)) + 0.5, zones, fontsize=7)
+        axes.text(column + 0.5, row + 0.5, number(value, 0), **style)
+    axes.set_yticks(np.arange(len(zones)) + 0.5, [shortened(zone, MOST_LETTERS) for zone in zones], fontsize=SMALL)
     axes.set_ylim(len(zones), 0)
     axes.tick_params(length=0)
     return mesh
@@ -112,5 +122,5 @@ def _label_hours(axes: Axes, hours: list[float]) -> None:
     step = max(1, -(-len(hours) // 26))
     ticks = [k + 0.5 for k in range(0, len(hours), step)]
     names = [f"{int(hours[k] // 3600):02d}" for k in range(0, len(hours), step)]
-    axes.set_xticks([*ticks, len(hours) + 0.5], [*names, "run"], fontsize=8)
-    axes.set_xlabel("hour of the day that begins at [h]; the last column is the whole run", color=GREY)
+    axes.set_xticks([*ticks, len(hours) + 0.5], [*names, tr("run")], fontsize=SMALL)
+    axes.set_xlabel(tr("hour of the day that begins at [h]; the last column is the whole run"), color=INK, fontsize=8)
