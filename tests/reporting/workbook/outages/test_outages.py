@@ -40,7 +40,7 @@ def test_the_cover_says_how_many_fail_and_by_which_outage(book, study):
     assert any(text.startswith(f"{seen.told(worst['case'])}: {worst['useful_zone_v']:.0f} V (zone A - B)") for text in said)
     assert any("failed: RuntimeError: the worker process died twice" in text for text in said)
     assert any("refused: supply.substations[X]: a contradiction another one" in text for text in said)
-    assert any("Checked against an editable value, secondary" in text for text in said)
+    assert any("an editable value, not verified" in text for text in said)
 
 
 def test_a_row_for_each_outage_with_the_grid_voltages_beside_each_other(book, study):

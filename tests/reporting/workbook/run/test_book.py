@@ -28,10 +28,11 @@ def test_all_sheets_are_there_in_order(small):
 def test_every_sheet_is_set_up_for_paper(small):
     for sheet in small.worksheets:
         width = sum(column.width for column in sheet.column_dimensions.values())
-        paper = 8 if width > 165.0 else 9  # A3, A4
+        is_cover = sheet.title == "Cover"
+        paper = 8 if width > 165.0 and not is_cover else 9  # A3, A4
         assert (sheet.page_setup.orientation, int(sheet.page_setup.paperSize)) == ("landscape", paper), sheet.title
         assert sheet.sheet_properties.pageSetUpPr.fitToPage
-        assert (int(sheet.page_setup.fitToWidth), int(sheet.page_setup.fitToHeight)) == (1, 0)
+        assert (int(sheet.page_setup.fitToWidth), int(sheet.page_setup.fitToHeight)) == (1, int(is_cover))
         assert sheet.freeze_panes is not None
         assert "&P of &N" in sheet.oddFooter.right.text
         for table in sheet.tables.values():

@@ -53,12 +53,12 @@ _COLUMNS = (
     Column("no.", "0"),
     Column("what is judged", widest=34),
     Column("found", "0.0", key="found"),
-    Column("must be", widest=10),
+    Column("must be", "beside", 10),
     Column("limit value", "0.0", key="limit"),
-    Column("unit", widest=8),
+    Column("unit", "beside", 8),
     Column("tolerance", "general", key="tolerance"),
     Column("margin", "0.0", key="margin"),
-    Column("verdict", widest=12, key="verdict"),
+    Column("verdict", "beside", 12, key="verdict"),
     Column("group", widest=16),
     Column("place of the worst", widest=30),
     Column("time of day"),
@@ -127,7 +127,9 @@ def add(book: Book) -> None:
     _name_limits(book, page, block, rows)
     colour_verdicts(block)
     book.define("acceptance_verdicts", page, block.cells("verdict"))
-    _count(book, page, counts_row, [_word(row) for row in rows])
+    for name, key in (("names", "what is judged"), ("found", "found"), ("limits", "limit")):
+        book.define(f"acceptance_{name}", page, block.cells(key))
+    _count(book, page, counts_row, [word_of(row) for row in rows])
 
 
 def accepted_rows(book: Book) -> list[Accepted]:
@@ -210,7 +212,7 @@ def cell_names(rows: Iterable[Accepted]) -> list[str]:
 
 def _margin(row: Accepted) -> Formula | None:
     """Return how far the found value is from the limit, negative beyond it."""
-    found, limit = _number(row.found), _number(row.limit_value)
+    found, limit = number_in(row.found), number_in(row.limit_value)
     if limit is None:
         return None
     text = "{found}-{limit}" if row.sense == AT_LEAST else "{limit}-{found}"
@@ -220,7 +222,7 @@ def _margin(row: Accepted) -> Formula | None:
 
 def _verdict(row: Accepted) -> Formula | str:
     """Return the verdict as a formula; as a word where the program says other than the numbers do."""
-    word = _word(row)
+    word = word_of(row)
     if row.met is not None and word != _by_numbers(row):
         return tr(word)
     if row.limit_value is None:
@@ -229,19 +231,20 @@ def _verdict(row: Accepted) -> Formula | str:
     return Formula(f'IF(ISNUMBER({{margin}}),IF({beyond},"{tr(MET)}","{tr(VIOLATED)}"),"{tr(OPEN)}")', tr(word))
 
 
-def _word(row: Accepted) -> str:
+def word_of(row: Accepted) -> str:
+    """Return the verdict on a row in a word, English."""
     return _by_numbers(row) if row.met is None else MET if row.met else VIOLATED
 
 
 def _by_numbers(row: Accepted) -> str:
-    found, limit = _number(row.found), _number(row.limit_value)
+    found, limit = number_in(row.found), number_in(row.limit_value)
     if found is None or limit is None:
         return OPEN
     margin = found - limit if row.sense == AT_LEAST else limit - found
     return MET if margin >= -row.tolerance - float(ROUNDING) * abs(limit) else VIOLATED
 
 
-def _number(value: float | Formula | None) -> float | None:
+def number_in(value: float | Formula | None) -> float | None:
     """Return what a cell comes to, None where that is no number."""
     known = value.value if isinstance(value, Formula) else value
     return None if known is None or isinstance(known, str) or math.isnan(known) else float(known)
@@ -251,7 +254,7 @@ def _name_limits(book: Book, page: Page, block: Block, rows: Sequence[Accepted])
     """Name the first cell of each limit, and show those that can be edited so; small numbers get more digits."""
     known: set[str] = set()
     for row, cell, at in zip(rows, cell_names(rows), range(block.first, block.last + 1), strict=True):
-        limit = _number(row.limit_value)
+        limit = number_in(row.limit_value)
         style = "0.0" if limit is None or abs(limit) >= 10.0 or limit == 0.0 else "0.00"
         for key in ("found", "margin"):
             page.sheet[block.cell(key, at)]._style = page.styles[style]

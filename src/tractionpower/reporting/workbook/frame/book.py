@@ -46,6 +46,7 @@ class Book:
         self.names = Names()
         self.pages: list[Page] = []
         self.pending: list[Pending] = []
+        self._single: list[Page] = []
         self.acceptance: list[Accepted] = []
         """What the sheets judge, for the sheet of acceptance."""
         self.cached: dict[str, dict[str, Any]] = {}
@@ -64,6 +65,14 @@ class Book:
         self.pages.append(page)
         return page
 
+    def print_on_one_page(self, page: Page) -> None:
+        """Let a sheet be printed on one page, of A4 unless the template says otherwise."""
+        self._single.append(page)
+
+    def kept_pages(self) -> list[Page]:
+        """Return the pages that the template keeps, in its order; of all that are there by now."""
+        return chosen_pages(self.pages, self.report)
+
     def define(self, name: str, page: Page, area: str) -> str:
         """Name a cell or a range of a page, for formulas anywhere in the book, and return the name."""
         return self.names.define(name, page.sheet, area)
@@ -71,7 +80,7 @@ class Book:
     def finish(self) -> None:
         """Keep the sheets that the template asks for in its order, and write formulas, names and properties."""
         del self.workbook[self.workbook.sheetnames[0]]
-        kept = chosen_pages(self.pages, self.report)
+        kept = self.kept_pages()
         drawn = {title for page in kept for title in _drawn_from(page)}
         hidden = [page for page in self.pages if page not in kept and page.sheet.title in drawn]
         for page in self.pages:
@@ -79,6 +88,9 @@ class Book:
             if page not in kept and page not in hidden:
                 self.names.forget(page.sheet)
                 self.workbook.remove(page.sheet)
+        for page in self._single:
+            setup, page.sheet.print_options.horizontalCentered = page.sheet.page_setup, True
+            setup.fitToHeight, setup.paperSize = 1, setup.paperSize if self.report.paper == "a3" else page.sheet.PAPERSIZE_A4
         for page in hidden:
             page.sheet.sheet_state = "hidden"
         self.pages = [*kept, *hidden]

@@ -134,6 +134,11 @@ def fill(colour: str) -> Any:
     return PatternFill("solid", start_color=colour, end_color=colour)
 
 
+def _font(**look: Any) -> Font:
+    """Return a font of the family of all cells; one without a name is shown in that of the viewer."""
+    return Font(name="Calibri", **look)
+
+
 def _look(name: str) -> dict[str, Any]:
     """Return font, fill, alignment, border and number format of a style by name."""
     if name in FORMATS:
@@ -142,24 +147,35 @@ def _look(name: str) -> dict[str, Any]:
     if name.startswith("editable "):
         return _look(name[9:]) | {"fill": fill(EDITABLE_FILL), "border": _BOX}
     if name.startswith("sum "):
-        return _look(name[4:]) | {"font": Font(bold=True), "border": Border(top=Side(style="thin", color=INK))}
+        return _look(name[4:]) | {"font": _font(bold=True), "border": Border(top=Side(style="thin", color=INK))}
     wrapped = Alignment(wrap_text=True, vertical="top")
     looks: dict[str, dict[str, Any]] = {
         "text": {"alignment": wrapped, "border": _BORDER},
         "beside": {"alignment": Alignment(wrap_text=True, vertical="top", horizontal="left", indent=1), "border": _BORDER},
         "any": {"alignment": Alignment(wrap_text=True, vertical="top", horizontal="left"), "border": _BORDER},
         "head": {
-            "font": Font(bold=True, color="FFFFFF"),
+            "font": _font(bold=True, color="FFFFFF"),
             "fill": fill(BLUE),
             "alignment": Alignment(wrap_text=True, vertical="center", horizontal="center"),
         },
-        "title": {"font": Font(bold=True, size=16, color=BLUE)},
-        "section": {"font": Font(bold=True, size=12, color=BLUE)},
-        "note": {"font": Font(italic=True, size=9, color=GREY)},
-        "label": {"font": Font(bold=True, color=INK), "alignment": wrapped},
+        "title": {"font": _font(bold=True, size=16, color=BLUE)},
+        "section": {"font": _font(bold=True, size=12, color=BLUE)},
+        "note": {"font": _font(italic=True, size=9, color=GREY)},
+        "label": {"font": _font(bold=True, color=INK), "alignment": wrapped},
         "plain": {},
         "wrapped": {"alignment": wrapped},
-        "link": {"font": Font(color="0563C1", underline="single")},
+        "subtitle": {"font": _font(size=11, color=GREY)},
+        "company": {"font": _font(bold=True, size=14, color=BLUE), "alignment": Alignment(horizontal="right")},
+        "rule": {"border": Border(bottom=Side(style="medium", color=BLUE))},
+        "box": {"alignment": Alignment(wrap_text=True, vertical="center", horizontal="left", indent=1), "border": _BOX},
+        "box label": {
+            "font": _font(bold=True, color=INK),
+            "fill": fill(PLAIN_FILL),
+            "alignment": Alignment(vertical="center"),
+            "border": _BOX,
+        },
+        "small head": {"font": _font(bold=True, color=BLUE), "border": Border(bottom=Side(style="thin", color=BLUE))},
+        "link": {"font": _font(color="0563C1", underline="single")},
         "good": {"fill": fill(GREEN_FILL), "alignment": wrapped},
         "bad": {"fill": fill(RED_FILL), "alignment": wrapped},
         "doubt": {"fill": fill(AMBER_FILL), "alignment": wrapped},
@@ -167,7 +183,7 @@ def _look(name: str) -> dict[str, Any]:
     }
     if name.startswith("big "):
         return looks[name[4:]] | {
-            "font": Font(bold=True, size=14, color=INK),
+            "font": _font(bold=True, size=14, color=INK),
             "alignment": Alignment(wrap_text=True, vertical="center"),
         }
     return looks[name]

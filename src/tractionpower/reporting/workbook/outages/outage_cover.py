@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from datetime import datetime
 from typing import Any
 
 from tractionpower.io.wording import counted
 from tractionpower.model.base import format_time
 from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages, outcome_words
-from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in, verdict_sentence
+from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
 from tractionpower.reporting.workbook.frame.page import Page
 
-MOST_NAMED = 4
+MOST_NAMED = 2
 """Outages that are named for each thing that fails."""
 
 
@@ -49,8 +48,6 @@ def _verdicts(facts: Facts, outages: Outages) -> Iterator[Said]:
         lines = (f"With nothing out, {case['grid']} grid voltage: {found or 'holds'}." for case, found in said)
         yield "", "\n".join(lines), "bad" if any(found for _, found in said) else "good"
     yield from _failing(outages)
-    for verdict in facts.verdicts:
-        yield "", verdict_sentence(verdict), {True: "good", False: "bad"}.get(verdict["met"], "doubt")
 
 
 def _failing(outages: Outages) -> Iterator[Said]:
@@ -93,6 +90,3 @@ def _origin(facts: Facts) -> Iterator[Said]:
     if wall is not None:
         with_workers = f" on {workers} processes" if workers and workers != 1 else ""
         yield "Time", f"{wall:.0f} s{with_workers}.", "wrapped"
-    version = run.get("versions", {}).get("tractionpower", "")
-    yield "Written", f"{datetime.now().astimezone():%Y-%m-%d %H:%M} by tractionpower {version}", "wrapped"
-    yield "Study, input hash", f"{run.get('study', '')}, {run.get('input_hash', facts.scenario.input_hash)}", "wrapped"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from datetime import datetime
 from typing import Any
 
 import pandas as pd
@@ -160,6 +159,3 @@ def _trust(facts: Facts) -> Iterator[Said]:
             yield label, trn("{count} limit is met or open", "All {count} limits are met or open", len(own)), "good"
     for note in facts.run["compare"]["notes"]:
         yield tr("Note"), recorded(str(note)), "doubt"
-    version = facts.run.get("versions", {}).get("tractionpower", "")
-    when = f"{datetime.now().astimezone():%Y-%m-%d %H:%M}"
-    yield tr("Written"), tr("{when} by tractionpower {version}", when=when, version=version), "wrapped"

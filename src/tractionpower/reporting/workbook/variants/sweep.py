@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from datetime import datetime
 
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.sweep_data import SweepData
 from tractionpower.reporting.texts import mark, number, tr, trn
 from tractionpower.reporting.workbook.common import acceptance, definitions, inputs
-from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in, verdict_sentence
+from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
@@ -46,7 +45,7 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
     book.pages.append(others)
     for add in (inputs.add, definitions.add, acceptance.add):
         add(book)
-    fill_in(book, front, (lambda _: _head(data), lambda facts: _verdicts(facts, data), lambda facts: _trust(facts, data)))
+    fill_in(book, front, (lambda _: _head(data), lambda _: _verdicts(data), lambda _: _trust(data)))
     book.finish()
     return book
 
@@ -69,7 +68,7 @@ def _head(data: SweepData) -> Iterator[Said]:
         yield tr("Sample"), tr("{count} draws with seed {seed}.", count=count, seed=seed), "wrapped"
 
 
-def _verdicts(facts: Facts, data: SweepData) -> Iterator[Said]:
+def _verdicts(data: SweepData) -> Iterator[Said]:
     subjects = dict(zip(data.cases["case"], data.cases["subject"], strict=True))
     extremes = data.run["sweep"]["extremes"]
     for name in differing_figures(data)[:MOST_SAID]:
@@ -81,11 +80,9 @@ def _verdicts(facts: Facts, data: SweepData) -> Iterator[Said]:
             for word, one in extremes[name].items()
         )  # fmt: skip
         yield tr(heading(name)), f"{'; '.join(ends)}.", "wrapped"
-    for verdict in facts.verdicts:
-        yield tr("Worst of all cases"), verdict_sentence(verdict), {True: "good", False: "bad"}.get(verdict["met"], "doubt")
 
 
-def _trust(facts: Facts, data: SweepData) -> Iterator[Said]:
+def _trust(data: SweepData) -> Iterator[Said]:
     counts = data.cases["status"].value_counts()
     parts = ", ".join(f"{counts[status]} {tr(STATUSES.get(status, status))}" for status in sorted(counts.index))
     style = "good" if set(counts.index) == {"complete"} else "doubt"
@@ -98,7 +95,3 @@ def _trust(facts: Facts, data: SweepData) -> Iterator[Said]:
         yield tr("Not computed"), words, "bad"
     if len(bare) > most:
         yield tr("Not computed"), tr("{count} more are on sheet Variants.", count=len(bare) - most), "bad"
-    version = facts.run.get("versions", {}).get("tractionpower", "")
-    when = f"{datetime.now().astimezone():%Y-%m-%d %H:%M}"
-    yield tr("Written"), tr("{when} by tractionpower {version}", when=when, version=version), "wrapped"
-    yield tr("Study, input hash"), f"{facts.run.get('study', '')}, {facts.run.get('input_hash', '')}", "wrapped"
