@@ -37,7 +37,10 @@ UNITS: dict[str, str] = {
     "km": "km",
     "kw": "kW",
     "pu": "p.u.",
+    "per_kelvin": "1/K",
+    "mva": "MVA",
     "mm2": "mm²",
+    "mm": "mm",
     "ma_per_m": "mA/m",
     "s": "s",
     "m": "m",
@@ -52,11 +55,13 @@ UNITS: dict[str, str] = {
 def unit_of(name: str) -> str:
     """Return the unit that the suffix of `name` stands for, or an empty string.
 
-    >>> unit_of("resistance_ohm_per_km")
-    'Ω/km'
+    A single letter is the symbol of a number in a formula, no unit.
+
+    >>> unit_of("resistance_ohm_per_km"), unit_of("km"), unit_of("c")
+    ('Ω/km', 'km', '')
     """
     for suffix in sorted(UNITS, key=len, reverse=True):
-        if name == suffix or name.endswith("_" + suffix):
+        if (name == suffix and len(name) > 1) or name.endswith("_" + suffix):
             return UNITS[suffix]
     return ""
 

@@ -16,7 +16,8 @@ from tractionpower.reporting.workbook import write_workbook
 SHEETS = [
     "Cover", "Acceptance", "Trains", "Calls", "Substations", "Energy", "Key figures", "Charts",
     "Extract trains", "Voltage profile", "Extract loads", "Load duration", "Events",
-    "Inputs study", "Inputs line", "Inputs stock", "Inputs timetable", "Inputs limits", "Model", "Definitions",
+    "Assumptions", "Defaults", "Inputs study", "Inputs supply", "Inputs conductors", "Inputs line", "Inputs trains",
+    "Inputs vehicles", "Inputs timetable", "Inputs limits", "Definitions", "Columns", "Not covered", "Solver evidence",
 ]  # fmt: skip
 MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 

@@ -1,76 +1,119 @@
-"""The sheets of definitions: what figures and columns mean, what the model leaves out, how well the solver did."""
+"""The sheet of definitions: what every key figure and every column of the tables means, how it is computed, by which source."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
+from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.page import Column, Page, heading_of
+from tractionpower.reporting.workbook.frame.page import Column, heading_of
 from tractionpower.results.columns import TABLES
 
-NOT_COVERED = (
-    "Harmonics, electromagnetic compatibility, and the stability of input filters: voltages and currents are means of a step.",
-    "Electric transients: a step is a steady state of the network; surges, arcs and breaker actions within it are not seen.",
-    "Signals and other trains: trains do not see each other, are held by no signal and may overlap; overlaps are counted.",
-    "The feeding grid: the no-load voltage of a substation does not depend on its own or another's load.",
-    "Temperatures of conductors and of equipment, and what follows from them for resistances and ratings.",
-    "Earthing, stray currents and rail potentials, where the study gives no leakage.",
-    "Forces between vehicles, slip beyond the adhesion limit, wind, and the higher resistance at the moment of starting.",
+_FIGURES = (
+    Column("figure", widest=46),
+    Column("unit"),
+    Column("of", widest=34),
+    Column("how it is computed", "beside", widest=90),
+    Column("by", widest=50),
+    Column("name in key_figures.json", widest=46),
 )
-"""What a reader must not take from the figures."""
+_COLUMNS = (
+    Column("table", widest=20),
+    Column("column", widest=36),
+    Column("unit"),
+    Column("meaning", "beside", widest=100),
+    Column("name in files", widest=36),
+)
 
-_EVIDENCE = {
-    "steps": "time steps computed",
-    "flagged_steps": "flagged steps, in which some node does not balance",
-    "worst_residual_a": "largest current that does not balance at a node [A]",
-    "residual_limit_a": "largest that is accepted without a flag [A]",
-    "mean_iterations": "mean number of iterations in a step",
-    "wall_seconds": "wall time of the run [s]",
-    "compile_seconds": "time to compile the kernels [s]",
-    "seed": "seed of everything that is drawn",
+OF = {
+    "train ": mark("each train"),
+    "substation ": mark("each substation"),
+    "feeder ": mark("each feeder"),
+    "section cabin ": mark("each feeder of a section cabin"),
+    "switch ": mark("each switch"),
+    "load ": mark("each fixed load"),
+    "zone ": mark("each feeding zone"),
+    "earthing ": mark("each earthing"),
+    "voltage-limiting device ": mark("each voltage-limiting device"),
+    "supply point ": mark("each supply point"),
 }
+"""What a figure is told of, by how its place begins."""
+
+RUN, WORST = mark("the whole run"), mark("the worst of the run")
+
+OF_RUN = (
+    "lowest_voltage_v", "highest_voltage_v", "longest_spell", "lowest_useful_voltage", "utilisation_percent", "breaker_share",
+    "least_reserve", "rail_potential_v", "lowest_rail", "highest_rail", "lowest_mean_rail", "highest_mean_rail",
+    "highest_mean_stray",
+)  # fmt: skip
+"""How figures begin that are told once, with the place where they came about."""
+
+SOURCES = {
+    "mean_useful_voltage_current_weighted": mark("EN 50388 (2005, 2012) as recalled; public design tool for Polish supply areas"),
+    "mean_useful_voltage_time_mean": mark("EN 50388:2022, annex B, as public evaluation scripts compute it"),
+    "lowest_useful_voltage": mark("EN 50388, both definitions; the text of the standard is not at hand"),
+    "lowest_voltage": mark("EN 50163, U_min2; secondary"),
+    "highest_voltage": mark("EN 50163, U_max2; secondary"),
+    "longest_spell_above_touch": mark("EN 50122-1, touch voltages; secondary"),
+    "longest_spell": mark("EN 50163, durations; secondary"),
+    "highest_mean_stray_current": mark("EN 50122-2, stray current; recalled"),
+    "lowest_mean_rail_potential": mark("EN 50122-2, shift of the rail potential; recalled"),
+    "highest_mean_rail_potential": mark("EN 50122-2, shift of the rail potential; recalled"),
+    "utilisation": mark("duty classes of IEC 60146-1-1, recalled; ratings of the inputs"),
+    "highest_clock_15_min": mark("quarter-hour demand of the grid operator, by the clock"),
+    "highest_demand": mark("quarter-hour demand of the grid operator, by the clock"),
+}
+"""Standard or practice that a figure follows, by how its name begins; the first that fits."""
 
 
 def add(book: Book) -> None:
-    """Add the sheets of the model and of the definitions."""
-    page = book.page("Model", "The model: evidence of the solver, and what is not covered")
-    page.section("Evidence")
-    run = book.facts.run
-    rows: list[tuple[Any, ...]] = [(words, run[name]) for name, words in _EVIDENCE.items() if run.get(name) is not None]
-    page.table((Column("what", widest=60), Column("value", "general")), rows)
-    page.section("What the model does not cover")
-    for text in NOT_COVERED:
-        page.wrapped(f"• {text}")
-    page.section("Versions")
-    page.table((Column("package", widest=60), Column("version")), sorted(run.get("versions", {}).items()))
-    _definitions(book)
-
-
-def _definitions(book: Book) -> None:
-    page: Page = book.page("Definitions", "Definitions of key figures and columns")
-    columns = (
-        Column("where", widest=24),
-        Column("quantity", widest=44),
-        Column("unit"),
-        Column("meaning", widest=90),
-        Column("name in files", widest=44),
-    )
-    page.table(columns, (*_figures(book), *_columns()), frozen=True)
+    """Add the sheets of definitions: of the key figures, and of the columns of the tables that these results have."""
+    figures = list(_figures(book))
+    if figures:
+        page = book.page("Definitions", "Definitions of the key figures")
+        page.note("Voltages, currents and powers are means of a time step. What is left empty under by is the program's own.")
+        page.table(_FIGURES, figures, frozen=True)
+    columns = list(_columns(book))
+    if columns:
+        page = book.page("Columns", "Definitions of the columns of the tables")
+        page.note(
+            "Tables that these results have, as Parquet files beside this workbook. A row of a time describes the step that"
+            " begins"
+            " then; currents and powers are positive when a train or load takes them, and when a substation feeds."
+        )
+        page.table(_COLUMNS, columns, frozen=True)
 
 
 def _figures(book: Book) -> Iterator[tuple[str, ...]]:
     """Yield every key figure once for each definition that it has."""
-    seen = set()
+    places: dict[tuple[str, str], list[str]] = {}
+    units: dict[tuple[str, str], str] = {}
     for figure in book.facts.results.key_figures:
         key = (figure["name"], figure.get("definition", ""))
-        if key not in seen:
-            seen.add(key)
-            yield "key figures", heading_of(key[0]).split(" [")[0], figure.get("unit", ""), key[1], key[0]
+        places.setdefault(key, []).append(figure.get("place") or "")
+        units[key] = figure.get("unit", "")
+    for (name, definition), where in places.items():
+        of = ", ".join(tr(each) for each in _told_of(name, where))
+        heading = heading_of(name).split(" [")[0]
+        yield heading, units[name, definition], of, recorded(definition), _source(name), name
 
 
-def _columns() -> Iterator[tuple[str, ...]]:
+def _told_of(name: str, places: list[str]) -> list[str]:
+    """Return what a figure with these places is told of."""
+    if name.startswith(OF_RUN):
+        return [WORST]
+    found = (next((words for begin, words in OF.items() if place.startswith(begin)), RUN) for place in places)
+    return list(dict.fromkeys(found))
+
+
+def _source(name: str) -> str:
+    return next((tr(source) for begin, source in SOURCES.items() if name.startswith(begin)), "")
+
+
+def _columns(book: Book) -> Iterator[tuple[str, ...]]:
+    present = set(book.facts.results.tables)
     for table, columns in TABLES.items():
-        for column in columns:
+        for column in columns if table in present else ():
             quantity = column.quantity
-            yield f"table {table}", heading_of(quantity.name).split(" [")[0], quantity.unit, quantity.meaning, quantity.name
+            heading = heading_of(quantity.name).split(" [")[0]
+            yield recorded(table.replace("_", " ")), heading, quantity.unit, recorded(quantity.meaning), quantity.name

@@ -1,209 +1,187 @@
-"""The inputs as used: the study, its supply, line, rolling stock and timetable, from the scenario that was run."""
+"""The inputs as used: every value that computed the figures, from the scenario that was run, with its source where it has one."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import Any
 
-from pydantic import BaseModel
-
-from tractionpower.model.base import Declaration, format_time
-from tractionpower.model.limits import ALL_SYSTEMS
-from tractionpower.model.line import Line
-from tractionpower.model.scenario import Scenario
-from tractionpower.model.supply import Supply
-from tractionpower.model.vehicle import Train, Vehicle
-from tractionpower.movement.compile import train_of
-from tractionpower.movement.formation import form
+from tractionpower.io.limits_files import shipped_limits
+from tractionpower.model.limits import ALL_SYSTEMS, Limit
+from tractionpower.model.scenario import Scenario, StudyFile
+from tractionpower.reporting.texts import mark, recorded, tr
+from tractionpower.reporting.workbook.common import input_trains
+from tractionpower.reporting.workbook.common.declared import DEFAULT, GIVEN, declared
+from tractionpower.reporting.workbook.common.input_tables import (
+    SETTINGS,
+    listed,
+    lists_of,
+    setting_rows,
+    settings,
+    shown,
+)
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.facts import KNOWN_AS
-from tractionpower.reporting.workbook.frame.page import Column, Page, heading_of
+from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
+from tractionpower.reporting.workbook.frame.page import Column, heading_of
 from tractionpower.reporting.workbook.run import conductors
-from tractionpower.reporting.workbook.run.trains import formation_in_words, route_in_words
 
-LEFT_OUT = "A list or field that the study does not give is left out; others have their defaults."
+MANY = ("contingency", "sweep")
+"""Kinds of studies of many cases."""
 
-MOST_ROWS = 12
-"""Rows that a cell shows of a list within a row, such as the profile of a load."""
+_STUDY = ("day", "coupling", "coupling_voltage_v", "seed", "coast_without_voltage_s")
 
-_NO_LISTS = ("format", "name", "source", "system")
-"""Fields that are no lists of devices, or are told elsewhere."""
+_DEFAULTS = (
+    "Given: the value differs from the default of the program; default: it is that value, given or not; left out: neither the"
+    " study nor the program sets it, and its meaning says what holds instead."
+)
+_SOURCES = (Column("input", widest=24), Column("which", widest=36), Column("status", widest=40), Column("source", widest=110))
+_LIMITS = (
+    Column("name"),
+    Column("value", "general"),
+    Column("unit", "beside"),
+    Column("meaning", "beside", widest=60),
+    Column("given / default", widest=16),
+    Column("status", widest=40),
+    Column("source", widest=80),
+)
 
 
 def add(book: Book) -> None:
     """Add the sheets of inputs."""
     scenario = book.facts.scenario
-    page = book.page("Inputs study", "Inputs as used: study and supply system")
-    page.note(LEFT_OUT)
-    page.section("Study")
-    page.table((Column("what", widest=40), Column("value", "any", widest=70)), _study(scenario))
-    _lists(page, scenario.supply, Supply)
-    conductors.add(page, scenario)
+    _study(book)
+    page = book.page("Inputs supply", "Inputs as used: supply system")
+    page.note(tr("System {system}. A list that the study does not give is left out.", system=scenario.supply.system))
+    lists_of(page, scenario.supply)
+    conductors.add(book.page("Inputs conductors", "Inputs as used: resistances of conductors"), scenario)
     page = book.page("Inputs line", "Inputs as used: line")
     if scenario.line.source:
-        page.note(f"Source: {scenario.line.source}")
-    page.note(LEFT_OUT)
-    _lists(page, scenario.line, Line)
+        page.note(tr("Source: {source}", source=scenario.line.source))
+    page.note("A list that the study does not give is left out: there are none.")
+    lists_of(page, scenario.line)
     if scenario.runs:
-        _stock(book)
-        _timetable(book)
+        input_trains.add(book)
+    _equipment(book)
     _limits(book)
 
 
-def _study(scenario: Scenario) -> Iterator[tuple[str, Any]]:
-    clock, output = scenario.clock, scenario.output
-    yield "study", scenario.name
-    yield "line", scenario.line.name
-    yield "system", scenario.supply.system
-    yield "start", format_time(clock.start)
-    yield "end", format_time(clock.end)
-    yield heading_of("step_s"), clock.step_s
-    yield "warm up, left out of key figures", "none" if clock.warm_up is None else format_time(clock.warm_up)
-    yield "coupling", scenario.coupling.replace("_", " ")
-    if scenario.coupling != "full":
-        yield heading_of("coupling_voltage_v"), scenario.coupling_voltage_v or "nominal voltage"
-    yield "seed", scenario.seed
-    yield "rows every [s]", "every step" if output.every_s is None else output.every_s
-    yield "tables", "all" if output.tables is None else ", ".join(output.tables)
+def _study(book: Book) -> None:
+    """Add the sheet of the study: clock, method, settings of what it asks for, sources."""
+    facts, scenario = book.facts, book.facts.scenario
+    page = book.page("Inputs study", "Inputs as used: study and settings")
+    page.note(_DEFAULTS)
+    page.section("Study")
+    page.table(SETTINGS, [*_names(scenario), *setting_rows(scenario.clock), *_method(scenario)])
+    for title, part in _parts(facts):
+        settings(page, tr(title), part, leave_out="search: ")
+    page.section("Sources of the inputs")
+    page.note("As the files of the inputs tell them. Files of supply, timetable and study have no field for a source.")
+    page.table(_SOURCES, _sources(scenario))
 
 
-def _lists(page: Page, whole: Declaration, kind: type[Declaration]) -> None:
-    """Write every list of `whole` that is not empty as a table with all fields; a single part as well."""
-    for name in kind.model_fields:
-        value = getattr(whole, name)
-        if name in _NO_LISTS or value is None or value == ():
-            continue
-        rows = value if isinstance(value, tuple) else (value,)
-        page.section(name.replace("_", " ").capitalize())
-        page.table(*_table_of(rows))
+def _names(scenario: Scenario) -> Iterator[tuple[Any, ...]]:
+    yield tr("study"), scenario.name, tr(GIVEN), ""
+    yield tr("line"), scenario.line.name, tr(GIVEN), ""
+    system = next(field for field in declared(scenario.supply) if field.name == "system")
+    yield tr("system"), system.value, tr(system.known), recorded(system.meaning)
 
 
-def _table_of(rows: Sequence[Declaration]) -> tuple[list[Column], list[list[Any]]]:
-    """Return columns and rows of declarations of one kind; a field that none of them gives is left out."""
-    kind = type(rows[0])
-    fields = [name for name in kind.model_fields if any(getattr(row, name) is not None for row in rows)]
-    fields.sort(key=lambda name: name != "id")  # a track inherits its ends, which come first
-    files = [row.model_dump(mode="json") for row in rows]
-    columns, values = [], []
-    for name in fields:
-        given = [getattr(row, name) for row in rows]
-        written = [file[name] for file in files]
-        heading = heading_of(kind.model_fields[name].alias or name)
-        if any(isinstance(value, float) and isinstance(text, str) for value, text in zip(given, written, strict=True)):
-            columns.append(Column(heading, "time"))  # a time of day is a number here and a text in files
-        elif all(value is None or (isinstance(value, float | int) and not isinstance(value, bool)) for value in given):
-            columns.append(Column(heading, "general"))
-        else:
-            columns.append(Column(heading, widest=50))
-        values.append([in_words(value) if columns[-1].style == "text" else value for value in given])
-    return columns, [list(row) for row in zip(*values, strict=True)]
+def _method(scenario: Scenario) -> Iterator[tuple[Any, ...]]:
+    """Yield what the study file says of the method; its declaration has the meanings."""
+    values = {field.name: field for field in declared(scenario)}
+    for name in _STUDY:
+        meaning = recorded(StudyFile.model_fields[name].description or "")
+        yield heading_of(name), shown(values[name]), tr(values[name].known), meaning
 
 
-def in_words(value: Any) -> Any:
-    """Return what stands in a cell for a value of a declaration: lists and parts in one line."""
-    if isinstance(value, BaseModel):
-        given = {name: getattr(value, name) for name in type(value).model_fields}
-        written = value.model_dump(mode="json")  # where a time of day is a text
-        given |= {name: text for name, text in written.items() if isinstance(text, str) and isinstance(given[name], float)}
-        return ", ".join(f"{name.replace('_', ' ')} {in_words(part)}" for name, part in given.items() if part is not None)
-    if isinstance(value, dict):
-        return "; ".join(f"{key}: {in_words(part)}" for key, part in value.items())
-    if isinstance(value, tuple | list) and len(value) > MOST_ROWS and isinstance(value[0], BaseModel):
-        return f"{len(value)} rows, from {in_words(value[0])} to {in_words(value[-1])}"
-    if isinstance(value, tuple | list):
-        return ("; " if value and isinstance(value[0], BaseModel) else ", ").join(str(in_words(part)) for part in value)
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return f"{value:g}" if isinstance(value, float) else value
+def _parts(facts: Facts) -> Iterator[tuple[str, Any]]:
+    """Yield the settings that act in such a run, with the title of their table."""
+    scenario, kind = facts.scenario, str(facts.run.get("kind") or "")
+    yield mark("Tables and rows that were written"), scenario.output
+    if facts.feasibility is not None or kind in MANY:
+        yield mark("Verdict on the timetable"), scenario.feasibility
+    if (facts.feasibility or {}).get("search") is not None:
+        yield mark("Search for changes that make the timetable feasible"), scenario.remedies
+    sizing = scenario.sizing
+    if kind in (*MANY, "size"):
+        yield mark("Ratings and mean useful voltage"), sizing
+    elif scenario.runs:
+        yield mark("Mean useful voltage"), sizing.useful_voltage
+    if (facts.run.get("size") or {}).get("search"):
+        yield mark("Search for the least equipment"), sizing.search
+    if kind == "contingency":
+        yield mark("Outages"), scenario.contingency
 
 
-def _stock(book: Book) -> None:
-    """Add trains with their formation, and every figure of their vehicles."""
+def _sources(scenario: Scenario) -> Iterator[tuple[str, str, str, str]]:
+    nowhere = tr("not told")
+    yield tr("line"), scenario.line.name, "", scenario.line.source or nowhere
+    for train in scenario.trains:
+        yield tr("train"), train.id, "", train.source or nowhere
+    for vehicle in scenario.vehicles:
+        yield tr("vehicle"), vehicle.id, "", vehicle.source or nowhere
+    for row in scenario.conductors:
+        yield recorded(row.kind.replace("_", " ")), row.name, _known_as(row.status), row.source or nowhere
+    for unit in scenario.rectifier_units:
+        yield tr("rectifier unit"), unit.unit, _known_as(unit.status), unit.source or nowhere
+    told = {(duty.duty_class, duty.status, duty.source) for duty in scenario.duty_classes}
+    for name, status, source in sorted(told):
+        yield tr("duty class"), name, _known_as(status), recorded(source) or nowhere
+
+
+def _equipment(book: Book) -> None:
+    """Add the rows of the tables of equipment that the supply uses."""
     scenario = book.facts.scenario
-    page = book.page("Inputs stock", "Inputs as used: trains and vehicles")
-    vehicles = {vehicle.id: vehicle for vehicle in scenario.vehicles}
-    used = {train.id: train for train in (train_of(run, scenario.trains) for run in scenario.runs)}
-    columns = [Column("train", widest=30), Column("name", widest=30), Column("formation", widest=60), Column("category")]
-    columns += [
-        Column("vehicles", "0"),
-        Column("mass with load [t]", "0.0"),
-        Column("inertia [t]", "0.0"),
-        Column("length [m]", "0.0"),
-    ]
-    columns += [Column("greatest speed [km/h]", "0"), Column(heading_of("service_rate_mps2"), "0.00")]
-    columns += [Column("auxiliaries and heating [kW]", "0.0"), Column("source", widest=50)]
-    page.section("Trains")
-    page.table(columns, [_train_row(train, vehicles) for _, train in sorted(used.items())])
-    page.section("Vehicles")
-    needed = sorted({part.id for train in used.values() for part in train.vehicles})
-    rows = [(name, *row) for name in needed for row in _fields(vehicles[name])]
-    page.table((Column("vehicle", widest=30), Column("quantity", widest=44), Column("value", "any", widest=60)), rows)
-
-
-def _train_row(train: Train, vehicles: dict[str, Vehicle]) -> list[Any]:
-    mass = form(train, vehicles)
-    return [
-        train.id,
-        train.name,
-        formation_in_words(train.vehicles),
-        train.category,
-        sum(part.count for part in train.vehicles),
-        mass.mass_kg / 1000.0,
-        mass.inertia_kg / 1000.0,
-        mass.length_m,
-        mass.max_mps * 3.6,
-        mass.service_rate_mps2,
-        (mass.auxiliary_w + mass.heating_w) / 1000.0,
-        train.source,
-    ]
-
-
-def _fields(part: BaseModel, before: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield heading and value of every field that is given, those of inner parts with the name of the part before them."""
-    for name in type(part).model_fields:
-        value = getattr(part, name)
-        if isinstance(value, BaseModel):
-            yield from _fields(value, f"{before}{name.replace('_', ' ')}: ")
-        elif value is not None and value not in ((), "") and name not in ("format", "id"):
-            yield f"{before}{heading_of(name)}", value if isinstance(value, float | int) else in_words(value)
-
-
-def _timetable(book: Book) -> None:
-    page = book.page("Inputs timetable", "Inputs as used: timetable")
-    columns = [Column("train run", widest=24), Column("formation", widest=44), Column("category"), Column("from", widest=30)]
-    columns += [Column("to", widest=30), Column("start", "time"), Column("start speed [km/h]", "general"), Column("end")]
-    columns += [Column("calls", "0"), Column("route", widest=60)]
-    rows = []
-    for run in sorted(book.facts.scenario.runs, key=lambda run: run.id):
-        begin = run.start.time if run.start is not None else run.calls[0].departure
-        legs = "; ".join(f"track {leg.track}, km {leg.from_km:g} to {leg.to_km:g}" for leg in run.route)
-        formation = run.train or formation_in_words(run.vehicles)
-        speed = 0.0 if run.start is None else run.start.speed_kmh
-        ends = run.end or ("stop" if run.calls and run.calls[-1].stops else "leave")
-        rows.append(
-            [
-                run.id,
-                formation,
-                run.category,
-                *route_in_words(run, book.facts.scenario.line),
-                begin,
-                speed,
-                ends,
-                len(run.calls),
-                legs,
-            ]
-        )
-    if any(run.calls for run in book.facts.scenario.runs):
-        page.note("Planned times of the calls are on sheet Calls.")
-    page.table(columns, rows, frozen=True)
+    tables: dict[str, tuple[Any, ...]] = {
+        mark("Conductors"): scenario.conductors,
+        mark("Rectifier units"): scenario.rectifier_units,
+        mark("Duty classes"): scenario.duty_classes,
+    }
+    if not any(tables.values()):
+        return
+    page = book.page("Inputs equipment", "Inputs as used: conductors, rectifier units, duty classes")
+    page.note("The rows of these tables that the supply uses, those of the study over those that ship with the program.")
+    for title, rows in tables.items():
+        if rows:
+            listed(page, tr(title), rows)
 
 
 def _limits(book: Book) -> None:
     scenario = book.facts.scenario
-    page = book.page("Inputs limits", f"Inputs as used: limits of system {scenario.supply.system}")
-    columns = [Column("name"), Column("value", "general"), Column("unit"), Column("meaning", widest=50)]
-    columns += [Column("status", widest=40), Column("source", widest=80)]
-    systems = {scenario.supply.system, *([ALL_SYSTEMS] if book.facts.run.get("return_circuit") else [])}
-    used = [limit for limit in scenario.limits if limit.system in systems]
-    rows = [(li.name, li.value, li.unit, li.meaning, KNOWN_AS.get(li.status, li.status), li.source) for li in used]
-    page.table(columns, rows, frozen=True)
+    page = book.page("Inputs limits", tr("Inputs as used: limits of system {system}", system=scenario.supply.system))
+    page.note(
+        "Values that were computed with, those of the study over those that ship. Verdicts, with values that can be changed, are"
+        " on sheet Acceptance."
+    )
+    shipped = {(limit.system, limit.name): limit for limit in shipped_limits()}
+    rows = [_limit(limit, shipped.get((limit.system, limit.name))) for limit in used_limits(book.facts)]
+    page.table(_LIMITS, rows, frozen=True)
+
+
+def used_limits(facts: Facts) -> list[Limit]:
+    """Return the limits that act in such a run: those of its system, and over it of all DC systems."""
+    scenario, kind = facts.scenario, str(facts.run.get("kind") or "")
+    common: list[str] = []
+    if facts.run.get("return_circuit"):
+        common += ["touch_", "stray_"]
+    if kind in (*MANY, "size"):
+        common += ["window_", "wire_"]
+    if kind == "contingency":
+        common += ["grid_"]
+    own = {limit.name for limit in scenario.limits if limit.system == scenario.supply.system}
+    return [limit for limit in scenario.limits if _acts(limit, scenario.supply.system, own, common)]
+
+
+def _acts(limit: Limit, system: str, own: set[str], common: Iterable[str]) -> bool:
+    if limit.system == system:
+        return True
+    return limit.system == ALL_SYSTEMS and limit.name not in own and limit.name.startswith(tuple(common))
+
+
+def _limit(limit: Limit, shipped: Limit | None) -> tuple[Any, ...]:
+    known = tr(DEFAULT) if shipped is not None and shipped.value == limit.value else tr(GIVEN)
+    meaning, source = recorded(limit.meaning), recorded(limit.source)
+    return limit.name, limit.value, limit.unit, meaning, known, _known_as(limit.status), source
+
+
+def _known_as(status: str) -> str:
+    return recorded(KNOWN_AS.get(status, status))

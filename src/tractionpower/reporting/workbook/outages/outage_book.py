@@ -5,7 +5,7 @@ from __future__ import annotations
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.outages import Outages
-from tractionpower.reporting.workbook.common import acceptance, definitions, inputs
+from tractionpower.reporting.workbook.common import acceptance, assumptions, definitions, evidence, inputs, not_covered
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
@@ -19,7 +19,7 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
     front = book.page("Cover", shorten(f"{book.facts.study}: outages", TITLE_LENGTH))
     for add in (outage_table.add, outage_envelopes.add, outage_delays.add):
         add(book, outages)
-    for add_inputs in (inputs.add, definitions.add, acceptance.add):
+    for add_inputs in (assumptions.add, inputs.add, definitions.add, not_covered.add, evidence.add, acceptance.add):
         add_inputs(book)
     outage_cover.fill(book, front, outages)
     book.finish()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.workbook.common import acceptance, cover, definitions, inputs
+from tractionpower.reporting.workbook.common import acceptance, assumptions, cover, definitions, evidence, inputs, not_covered
 from tractionpower.reporting.workbook.feasibility import delays, feasibility, lost_time, remedies, sections
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import shorten
@@ -38,7 +38,7 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
     charted = book.page("Charts", "Charts")
     drawn = extracts.add(book)
     charts.draw_all(charted, drawn)
-    for add in (events.add, inputs.add, definitions.add):
+    for add in (events.add, assumptions.add, inputs.add, definitions.add, not_covered.add, evidence.add):
         add(book)
     acceptance.add(book)
     cover.fill_in(book, front)

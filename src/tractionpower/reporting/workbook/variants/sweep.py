@@ -8,8 +8,8 @@ from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.sweep_data import SweepData
 from tractionpower.reporting.texts import mark, number, tr, trn
-from tractionpower.reporting.workbook.common import acceptance, definitions, inputs
-from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in
+from tractionpower.reporting.workbook.common import acceptance, assumptions, definitions, evidence, inputs, not_covered
+from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in, verdict_sentence
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
@@ -43,7 +43,7 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
         add_charts(book, data, cases, cells, variants)
         add_verdicts(book, cases, cells)
     book.pages.append(others)
-    for add in (inputs.add, definitions.add, acceptance.add):
+    for add in (assumptions.add, inputs.add, definitions.add, not_covered.add, evidence.add, acceptance.add):
         add(book)
     fill_in(book, front, (lambda _: _head(data), lambda _: _verdicts(data), lambda _: _trust(data)))
     book.finish()
