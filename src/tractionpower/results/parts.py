@@ -32,9 +32,10 @@ def join_parts(table: str, parts: Sequence[Path], path: Path) -> None:
             writer.write_table(group)
 
 
-def read_joined(files: Sequence[Path]) -> pa.Table:
-    """Return the rows of files one after the other."""
-    return pa.concat_tables([pq.read_table(file) for file in files]).unify_dictionaries()
+def read_joined(files: Sequence[Path], columns: Sequence[str] | None = None) -> pa.Table:
+    """Return the rows of files one after the other, with some columns or all."""
+    wanted = None if columns is None else list(columns)
+    return pa.concat_tables([pq.read_table(file, columns=wanted) for file in files]).unify_dictionaries()
 
 
 def read_groups(files: Sequence[Path]) -> Iterator[pa.Table]:

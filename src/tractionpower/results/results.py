@@ -85,8 +85,15 @@ class Results:
         """Names of the tables."""
         return sorted(self._source)
 
-    def table(self, name: str) -> pd.DataFrame:
+    def table(self, name: str, columns: Sequence[str] | None = None) -> pd.DataFrame:
         """Return a table; its columns carry their units in their names.
+
+        Parameters
+        ----------
+        name
+            Name of the table.
+        columns
+            Those to read, in their order; None: all. A few columns of a day of trains take a small part of its memory.
 
         Raises
         ------
@@ -94,7 +101,11 @@ class Results:
             If the run has no such table.
         """
         source = self._source_of(name)
-        frame: pd.DataFrame = (source if isinstance(source, pa.Table) else read_joined(source)).to_pandas()
+        if isinstance(source, pa.Table):
+            rows = source if columns is None else source.select(list(columns))
+        else:
+            rows = read_joined(source, columns)
+        frame: pd.DataFrame = rows.to_pandas()
         return frame
 
     def batches(self, name: str) -> Iterator[pa.Table]:

@@ -101,12 +101,16 @@ class Facts(Subject):
         told: dict[str, dict[str, Any]] = self.run.get("ledgers", {})
         return {name: ledger for name, ledger in told.items() if name == "electric" or ledger.get("train", "")}
 
-    def table(self, name: str) -> pd.DataFrame:
-        """Return a table; an empty one where the run has none. A table of another kind than asked for last goes."""
-        if name not in self._tables:
-            frame = self.results.table(name) if name in self.results.tables else pd.DataFrame()
-            self._tables = {name: frame}  # a day of trains takes half a gigabyte
-        return self._tables[name]
+    def table(self, name: str, columns: tuple[str, ...] | None = None) -> pd.DataFrame:
+        """Return a table with all or some of its columns; an empty one where the run has none.
+
+        A table of another kind than asked for last goes.
+        """
+        key = f"{name} {columns}"
+        if key not in self._tables:
+            frame = self.results.table(name, columns) if name in self.results.tables else pd.DataFrame()
+            self._tables = {key: frame}  # a day of trains with all columns takes half a gigabyte
+        return self._tables[key]
 
     @cached_property
     def places(self) -> dict[str, dict[str, dict[str, Any]]]:

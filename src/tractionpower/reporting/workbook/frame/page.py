@@ -39,6 +39,12 @@ PADDING = 2.5
 WIDE = 165.0
 """A sheet that is wider than this is printed on A3: on A4 its letters would be too small [characters]."""
 
+MOST_WIDE = {"a4": 245.0, "a3": 350.0}
+"""Width of what one page shows in letters that can be read; a sheet that is wider takes two pages or more [characters]."""
+
+MOST_PRINTED, FIRST_PRINTED = 1000, 60
+"""Of a table with more rows than the first, as many as the second are printed: nobody reads a hundred pages of rows."""
+
 LINE_POINTS = 15.0
 """Height of a line of text [pt]."""
 
@@ -120,6 +126,7 @@ class Page:
         self.next = 1
         self._needed: dict[int, float] = {}
         self._tables = 0
+        self._last_printed: int | None = None
         self._set_up()
         self.line(self.title, "title")
         self.sheet.row_dimensions[1].height = 24.0
@@ -151,7 +158,9 @@ class Page:
         self.next += self._tables > 0
         self.line(text, "section")
 
-    def table(self, columns: Sequence[Column], rows: Iterable[Sequence[Any]], *, frozen: bool = False) -> Block:
+    def table(
+        self, columns: Sequence[Column], rows: Iterable[Sequence[Any]], *, frozen: bool = False, printed: int = MOST_PRINTED
+    ) -> Block:
         """Write a table with a filter in its header.
 
         Parameters
@@ -162,6 +171,8 @@ class Page:
             The values, among them formulas; a time is given in seconds.
         frozen
             Whether the header stays in sight and is printed on every page; for the only long table of a sheet.
+        printed
+            Of a table with more rows the first few are printed, and nothing that stands below; the printed page says so.
         """
         top = self.next
         shown = [tr(column.heading) for column in columns]
@@ -192,6 +203,8 @@ class Page:
             self.sheet.freeze_panes = f"B{top + 1}"
             self.sheet.print_title_rows = f"{top}:{top}"
         self._header_height(top, shown)
+        if self._last_printed is None and block.last - top > printed:
+            self._print_beginning(block, min(printed, FIRST_PRINTED))
         self.next += 2 if block.last >= block.first else 1
         return block
 
@@ -213,10 +226,16 @@ class Page:
         sheet = self.sheet
         width = sum(needed + PADDING for needed in self._needed.values())
         paper = self.book.report.paper
-        wide = width > WIDE if paper == "fit" else paper == "a3"
-        sheet.page_setup.paperSize = sheet.PAPERSIZE_A3 if wide else sheet.PAPERSIZE_A4
-        for number, width in self._needed.items():
-            self.sheet.column_dimensions[get_column_letter(number)].width = width + PADDING
+        if paper == "fit":
+            paper = "a3" if width > WIDE else "a4"
+        sheet.page_setup.paperSize = sheet.PAPERSIZE_A3 if paper == "a3" else sheet.PAPERSIZE_A4
+        sheet.page_setup.fitToWidth = max(1, math.ceil(width / MOST_WIDE[paper]))
+        if sheet.page_setup.fitToWidth > 1:
+            sheet.print_title_cols = "A:A"
+        for number, needed in self._needed.items():
+            sheet.column_dimensions[get_column_letter(number)].width = needed + PADDING
+        if self._last_printed is not None:
+            sheet.print_area = f"A1:{get_column_letter(max(self._needed))}{self._last_printed}"
         if self.sheet.freeze_panes is None:
             self.sheet.freeze_panes = "A2"
 
@@ -224,6 +243,12 @@ class Page:
         """Give the first columns at least these widths [characters]."""
         for number, width in enumerate(widths, 1):
             self._needed[number] = max(self._needed.get(number, 0.0), width)
+
+    def _print_beginning(self, block: Block, rows: int) -> None:
+        """Print the sheet down to some row of a table, and say so below the page."""
+        self._last_printed = block.first + rows - 1
+        words = tr("printed: the first {rows} of {all} rows", rows=rows, all=block.last - block.first + 1)
+        self.sheet.oddFooter.center.text = words.replace("&", "&&")
 
     def _add_filter(self, block: Block) -> None:
         self._tables += 1

@@ -1,146 +1,245 @@
-"""The sheet of charts: train graph, voltage along the line, load curves and load duration, drawn from the extracts."""
+"""The sheet of charts, drawn from the extracts: train graph, voltages along the line and how often, loads of substations."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.figures.base.labels import CLOCK_STEPS_S
+from tractionpower.reporting.texts import mark, number, tr
 from tractionpower.reporting.workbook.frame.facts import limit_in_words
 from tractionpower.reporting.workbook.frame.page import Page
-from tractionpower.reporting.workbook.frame.plots import COLOURS, DASHES, GREY, Line, draw, scatter, show_clock
-from tractionpower.reporting.workbook.run.extracts import (
-    KM,
-    LIMITS,
-    LOWEST,
-    MEAN,
-    PANTOGRAPH,
-    SHARE,
-    TIME,
-    Drawn,
-    Stretch,
-    km_span,
-    limit_heading,
-    period_in_words,
-    power_heading,
+from tractionpower.reporting.workbook.frame.plots import (
+    BOLD,
+    COLOURS,
+    DASHES,
+    GRID,
+    INK,
+    NORMAL,
+    THIN,
+    Line,
+    bars,
+    draw,
+    hide_from_legend,
+    mark_point,
+    name_end,
+    room_above,
+    room_on_the_right,
+    scatter,
+    second_axis,
+    show_clock,
 )
+from tractionpower.reporting.workbook.run.drawn import KM, SHARE, SPEED, TIME, VOLTAGE, Drawn, Stretch, period_in_words
+from tractionpower.reporting.workbook.run.load_extracts import POWER, mean_key, power_key
+from tractionpower.reporting.workbook.run.voltage_extracts import LIMITS, PANTOGRAPH, km_span, limit_key
 
-MOST_TRACKS = 3
-"""Tracks that one chart of voltages shows."""
+TRACKS_OF_A_CHART, MOST_PROFILES = 2, 4
+"""Tracks that one chart of voltages shows, and charts of a line."""
+
+MOST_SUBSTATIONS = 2 * len(COLOURS)
+"""Substations that a chart of loads shows: the most loaded."""
 
 MOST_TICKS = 12
-VOLTAGE_TICK = 200.0
-"""The axis of voltages begins and ends at a multiple of this [V]."""
+ROUND_V = 200.0
+
+CURVES = (("lowest", mark("track {track}, lowest"), "solid", NORMAL), ("mean", mark("track {track}, mean"), "sysDash", NORMAL),
+          ("highest", mark("track {track}, highest"), "sysDot", THIN))  # fmt: skip
 
 
 def draw_all(page: Page, drawn: Drawn) -> None:
-    """Fill the sheet of charts from the extracts; it says what is shown and what is left out."""
-    if "trains" in drawn.blocks:
-        _train_graphs(page, drawn)
-    if "profile" in drawn.blocks:
-        _profiles(page, drawn)
-    if "loads" in drawn.blocks:
-        _next_page(page)
-        page.section("Load curves of the substations")
-        page.note(f"Power at the busbars, means of {period_in_words(drawn.period_s)} by the clock.")
-        page.chart(_loads(drawn))
-        _next_page(page)
-        page.section("Load duration of the substations")
-        page.note("Power that is reached or exceeded in a share of the time, from the means of the stored steps.")
-        page.chart(_duration(drawn))
+    """Fill the sheet of charts; it says what is shown and what is left out."""
+    kinds: dict[str, Callable[[Page, Drawn], None]] = {
+        "trains": _train_graphs, "profile": _profiles, "histogram": _histogram, "worst": _worst_train, "loads": _loads,
+        "substation": _sliding, "duration": _duration,
+    }  # fmt: skip
+    for kind, add in kinds.items():
+        if kind in drawn.blocks:
+            add(page, drawn)
 
 
-def _next_page(page: Page) -> None:
+def _begin(page: Page, title: str, note: str) -> None:
+    """Begin a page with its heading and what there is to say of the chart."""
     if page.sheet._charts:
         page.new_page()
+    page.section(title)
+    page.note(note)
 
 
-def _by_line(drawn: Drawn, stretches: Sequence[Stretch]) -> list[tuple[str, list[Stretch]]]:
-    """Return the stretches of each line with what stands behind the title of its chart; alone, it has nothing there."""
+def _by_line(drawn: Drawn, stretches: Sequence[Stretch]) -> list[tuple[str, int, list[Stretch]]]:
+    """Return what stands behind the title of each line's chart, its number and its stretches; alone, nothing stands there."""
     numbers = sorted({stretch.line for stretch in stretches})
     words = {number: f", {told(drawn.lines[number])}" if len(numbers) > 1 and number >= 0 else "" for number in numbers}
-    return [(words[number], [each for each in stretches if each.line == number]) for number in numbers]
+    return [(words[number], number, [each for each in stretches if each.line == number]) for number in numbers]
 
 
 def _train_graphs(page: Page, drawn: Drawn) -> None:
-    for words, stretches in _by_line(drawn, drawn.stretches["trains"]):
-        _next_page(page)
-        page.section(f"Train graph{words}")
+    for words, line_number, stretches in _by_line(drawn, drawn.stretches["trains"]):
+        title = tr("Train graph{which}", which=words)
         shown = len({stretch.name for stretch in stretches})
-        page.note(f"{shown} of {drawn.trains} trains: rising kilometres blue, falling dark and dashed.")
-        chart = scatter(f"Train graph{words}", TIME, KM, legend=False)
+        _begin(page, title, tr("{shown} of {all} trains: rising kilometres blue, falling dark and dashed.",
+                               shown=shown, all=drawn.trains))  # fmt: skip
+        chart = scatter(title, tr(TIME), tr(KM), legend=False)
+        for station in drawn.stretches["stations"]:
+            if station.line == line_number:
+                series = draw(chart, drawn.blocks["stations"], _line(station.name, "time", "km", station, GRID, width=THIN))
+                name_end(series, 2)
         for train in stretches:
-            colour, dashes = (COLOURS[0], "solid") if train.rising else (COLOURS[-1], "dash")
-            draw(chart, drawn.blocks["trains"], Line(train.name, TIME, KM, train.first, train.last, colour, dashes))
+            colour, dashes = (COLOURS[0], "solid") if train.rising else (INK, "dash")
+            draw(chart, drawn.blocks["trains"], _line(train.name, "time", "km", train, colour, dashes))
         _show_clock(chart, *drawn.spans["trains"])
+        low, high = drawn.spans[f"graph {line_number}"]
+        chart.y_axis.scaling.min, chart.y_axis.scaling.max = low // 5.0 * 5.0, -(-high // 5.0) * 5.0
+        room_on_the_right(chart)
         page.chart(chart)
 
 
+def _line(name: str, x: str, y: str, rows: Stretch, colour: str, dashes: str = "solid", width: int = NORMAL) -> Line:
+    return Line(name, x, y, rows.first, rows.last, colour, dashes, width)
+
+
 def _profiles(page: Page, drawn: Drawn) -> None:
-    for words, every in _by_line(drawn, drawn.stretches["profile"]):
-        stretches = _of_interest(every)
-        _next_page(page)
-        page.section(f"Voltage along the line{words}")
-        where = "the pantographs of trains" if stretches[0].where == PANTOGRAPH else "cross-sections"
-        left_out = len({stretch.name for stretch in every} - {stretch.name for stretch in stretches})
-        more = f"; {left_out} more tracks are on sheet Voltage profile" if left_out else ""
-        page.note(f"Lowest and mean voltage of the run at {where}, with limits{more}.")
-        page.chart(_profile(drawn, stretches, f"Voltage along the line{words}"))
+    for words, line_number, every in _by_line(drawn, drawn.stretches["profile"]):
+        at_trains = [stretch for stretch in every if stretch.where == PANTOGRAPH]
+        shown = at_trains or every
+        groups = [shown[k : k + TRACKS_OF_A_CHART] for k in range(0, len(shown), TRACKS_OF_A_CHART)]
+        for stretches in groups[:MOST_PROFILES]:
+            which = f", {told([each.name for each in stretches])}" if len(groups) > 1 else words
+            title = tr("Voltage along the line{which}", which=which)
+            where = tr("the pantographs of trains") if at_trains else tr("cross-sections")
+            note = tr("Lowest, mean and highest voltage of the run at {where}. The limits follow sheet Acceptance.", where=where)
+            left_out = sum(map(len, groups[MOST_PROFILES:]))
+            if left_out and stretches == groups[0]:
+                note += " " + tr("{count} more tracks are on sheet Voltage profile.", count=left_out)
+            _begin(page, title, note)
+            page.chart(_profile(drawn, stretches, line_number, title))
 
 
-def _of_interest(stretches: Sequence[Stretch]) -> list[Stretch]:
-    """Return what one chart of voltages shows: tracks at pantographs, or at cross-sections where no train ran."""
-    at_trains = [stretch for stretch in stretches if stretch.where == PANTOGRAPH]
-    return (at_trains or list(stretches))[:MOST_TRACKS]
-
-
-def _profile(drawn: Drawn, stretches: Sequence[Stretch], title: str) -> Any:
-    chart, block = scatter(title, KM, "voltage [V]"), drawn.blocks["profile"]
+def _profile(drawn: Drawn, stretches: Sequence[Stretch], line_number: int, title: str) -> Any:
+    chart = scatter(title, tr(KM), tr(VOLTAGE))
     for stretch, colour in zip(stretches, COLOURS, strict=False):
-        for heading, dashes in ((LOWEST, "solid"), (MEAN, "sysDash")):
-            name = f"track {stretch.name}, {heading.split()[0]}"
-            draw(chart, block, Line(name, KM, heading, stretch.first, stretch.last, colour, dashes))
-    longest = max(stretches, key=lambda stretch: stretch.last - stretch.first)
-    for name, dashes in zip(LIMITS, DASHES[1:], strict=True):
-        if limit_heading(name) in block.headings:
-            draw(chart, block, Line(limit_in_words(name), KM, limit_heading(name), longest.first, longest.last, GREY, dashes))
-    low, high = drawn.spans["voltage"]
-    chart.y_axis.scaling.min = _down(low - 1.0, VOLTAGE_TICK)  # a limit is no border of the chart
-    chart.y_axis.scaling.max = -_down(-high - 1.0, VOLTAGE_TICK)
-    if km_span(stretches[0].line) in drawn.spans:
-        first, last = drawn.spans[km_span(stretches[0].line)]
-        chart.x_axis.scaling.min, chart.x_axis.scaling.max = _down(first, 1.0), -_down(-last, 1.0)
+        for key, words, dashes, width in CURVES:
+            name = tr(words, track=stretch.name)
+            draw(chart, drawn.blocks["profile"], _line(name, "km", key, stretch, colour, dashes, width))
+    for ends in drawn.stretches.get("limits", ()):
+        known = (name for name in LIMITS if limit_key(name) in drawn.blocks["limits"].keys)
+        for name, dashes in zip(known, DASHES[1:], strict=False):
+            if ends.line == line_number:
+                width = BOLD if name == "u_min2" else NORMAL
+                line = _line(limit_in_words(name), "km", limit_key(name), ends, INK, dashes, width)
+                draw(chart, drawn.blocks["limits"], line)
+    entries = len(chart.series)
+    for device in drawn.stretches.get("devices", ()):
+        if device.line == line_number:
+            colour = INK if device.rising else "AAAAAA"
+            mark_point(chart, drawn.blocks["devices"], _line(device.name, "km", "high", device, colour))
+    if len(chart.series) > entries:
+        hide_from_legend(chart, range(entries, len(chart.series)))
+        room_above(chart)
+    chart.y_axis.scaling.min, chart.y_axis.scaling.max = drawn.spans["voltage"]
+    chart.y_axis.majorUnit = ROUND_V
+    if km_span(line_number) in drawn.spans:
+        first, last = drawn.spans[km_span(line_number)]
+        chart.x_axis.scaling.min, chart.x_axis.scaling.max = first // 1.0, -(-last // 1.0)
     return chart
 
 
-def _loads(drawn: Drawn) -> Any:
-    chart = scatter("Load curves of the substations", TIME, "power [kW]")
-    _draw_substations(chart, drawn, "loads", TIME)
-    _show_clock(chart, *drawn.spans["loads"])
-    return chart
+def _histogram(page: Page, drawn: Drawn) -> None:
+    title = tr("Voltages at the pantographs")
+    _begin(page, title, "Share of the time of all trains in classes of voltage. The limits follow sheet Acceptance.")
+    block = drawn.blocks["histogram"]
+    keys = ("within", "low", "high")
+    width = block.sheet.cell(block.first, block.column("to")).value - block.sheet.cell(block.first, block.column("from")).value
+    words = tr("voltage at the pantograph, classes of {width} V by their lower end [V]", width=number(width))
+    page.chart(bars(title, tr(SHARE), block, "from", keys, x_title=words, stacked=True))
 
 
-def _duration(drawn: Drawn) -> Any:
-    chart = scatter("Load duration of the substations", SHARE, "power [kW]")
-    _draw_substations(chart, drawn, "duration", SHARE)
+def _worst_train(page: Page, drawn: Drawn) -> None:
+    title = tr("Train {train}: voltage and speed", train=drawn.train)
+    _begin(page, title, "The train with the lowest voltage at its pantograph.")
+    chart = scatter(title, tr(TIME), tr(VOLTAGE))
+    block = drawn.blocks["worst"]
+    draw(chart, block, Line(tr("voltage"), "time", "voltage", block.first, block.last, COLOURS[0]))
+    limit = drawn.blocks.get("worst limit")
+    if limit is not None:
+        draw(chart, limit, Line(limit_in_words("u_min2"), "time", "limit", limit.first, limit.last, INK, "dash", BOLD))
+    low, high = drawn.spans["worst voltage"]
+    chart.y_axis.scaling.min, chart.y_axis.scaling.max = (low - 1.0) // ROUND_V * ROUND_V, -(-(high + 1.0) // ROUND_V) * ROUND_V
+    _show_clock(chart, *drawn.spans["worst"])
+    speed = scatter("", "", tr(SPEED))
+    draw(speed, block, Line(tr("speed"), "time", "speed", block.first, block.last, COLOURS[1]))
+    speed.y_axis.scaling.min = 0.0
+    second_axis(chart, speed)
+    page.chart(chart)
+
+
+def _loads(page: Page, drawn: Drawn) -> None:
+    title = tr("Load curves of the substations")
+    note = tr("Power at the busbars, means of {period} by the clock.", period=period_in_words(drawn.period_s))
+    shown = _most_loaded(drawn)
+    groups = [shown[k : k + len(COLOURS)] for k in range(0, len(shown), len(COLOURS))]
+    for group in groups:
+        which = tr(": {first} to {last}", first=group[0], last=group[-1]) if len(groups) > 1 else ""
+        _begin(page, f"{title}{which}", f"{note}{_left_out(drawn)}")
+        chart = scatter(f"{title}{which}", tr(TIME), tr(POWER))
+        _draw_substations(chart, drawn, group, "loads", "time")
+        _show_clock(chart, *drawn.spans["loads"])
+        page.chart(chart)
+
+
+def _sliding(page: Page, drawn: Drawn) -> None:
+    title = tr("Substation {name}: load with sliding means", name=drawn.substation)
+    _begin(page, title, "The most loaded substation. A sliding mean is that of the window that ends at the time.")
+    block = drawn.blocks["substation"]
+    chart = scatter(title, tr(TIME), tr(POWER))
+    draw(chart, block, Line(tr("power"), "time", "power", block.first, block.last, "A6C8E0", width=THIN))
+    for window, colour in zip(drawn.windows, (COLOURS[1], COLOURS[2], INK), strict=False):
+        name = tr("mean of {period}", period=period_in_words(window))
+        draw(chart, block, Line(name, "time", mean_key(window), block.first, block.last, colour, width=BOLD))
+    if "contract" in block.keys:
+        draw(chart, block, Line(tr("contract power"), "time", "contract", block.first, block.last, COLOURS[3], "dash"))
+    _from_nothing(chart, drawn)
+    _show_clock(chart, *drawn.spans["substation"])
+    page.chart(chart)
+
+
+def _duration(page: Page, drawn: Drawn) -> None:
+    title = tr("Load duration of the substations")
+    note = tr("Power that is reached or exceeded in a share of the time, from the means of the stored steps.")
+    _begin(page, title, f"{note}{_left_out(drawn)}")
+    chart = scatter(title, tr(SHARE), tr(POWER))
+    _draw_substations(chart, drawn, _most_loaded(drawn), "duration", "share")
     chart.x_axis.scaling.min, chart.x_axis.scaling.max = 0.0, 100.0
-    return chart
+    page.chart(chart)
 
 
-def _draw_substations(chart: Any, drawn: Drawn, kind: str, x: str) -> None:
-    block = drawn.blocks[kind]
-    if drawn.spans["power"][0] >= 0.0:
+def _left_out(drawn: Drawn) -> str:
+    count = len(drawn.substations)
+    if count <= MOST_SUBSTATIONS:
+        return ""
+    return " " + tr("The {shown} most loaded of {all} substations.", shown=MOST_SUBSTATIONS, all=count)
+
+
+def _most_loaded(drawn: Drawn) -> list[str]:
+    """Return the most loaded substations in the order of the line."""
+    return sorted(drawn.substations[:MOST_SUBSTATIONS], key=drawn.numbers.__getitem__)
+
+
+def _from_nothing(chart: Any, drawn: Drawn) -> None:
+    """Let the axis of power begin at nothing where no substation feeds back."""
+    low, high = drawn.spans["power"]
+    if low >= -0.005 * high:
         chart.y_axis.scaling.min = 0.0
-    for number, name in enumerate(drawn.substations):
-        dashes, colour = DASHES[number // len(COLOURS) % len(DASHES)], COLOURS[number % len(COLOURS)]
-        draw(chart, block, Line(name, x, power_heading(name), block.first, block.last, colour, dashes))
+
+
+def _draw_substations(chart: Any, drawn: Drawn, names: Sequence[str], kind: str, x: str) -> None:
+    block = drawn.blocks[kind]
+    _from_nothing(chart, drawn)
+    for k, name in enumerate(names):
+        dashes, colour = DASHES[k // len(COLOURS) % len(DASHES)], COLOURS[k % len(COLOURS)]
+        draw(chart, block, Line(name, x, power_key(drawn.numbers[name]), block.first, block.last, colour, dashes))
 
 
 def _show_clock(chart: Any, begin_s: float, end_s: float) -> None:
     width = max(end_s - begin_s, 1.0)
     show_clock(chart.x_axis, begin_s, end_s, next((step for step in CLOCK_STEPS_S if width / step <= MOST_TICKS), 86400))
-
-
-def _down(value: float, step: float) -> float:
-    return value // step * step
