@@ -118,7 +118,7 @@ def test_a_route_over_both_lines_tells_where_its_kilometres_jump(data, no_overla
         (500, "Zachod"), (6000, "Pole"), (11500, "Rozjazd"), (12500, "Rozjazd"),
     ]  # fmt: skip
     ((_, figure),) = train_figures(data, ["R 101"])
-    assert "V on track 3 at km 0.3" in figure.get_suptitle()
+    assert "V, track 3, km 0.3" in figure.get_suptitle()
     joints = [line for line in figure.axes[0].lines if line.get_label() == "change to other kilometres"]
     assert [line.get_xdata()[0] for line in joints] == pytest.approx([11.9])
     assert course_of(data.planned["IC 11"].path).joints_m == ()

@@ -10,7 +10,9 @@ from typing import Any
 import pandas as pd
 
 from tractionpower.model.scenario import Scenario
+from tractionpower.model.vehicle import Train
 from tractionpower.movement.compile import PlannedRun, plan_runs
+from tractionpower.reporting.facts.formations import kinds_of_trains
 from tractionpower.reporting.facts.places import LinePlaces
 from tractionpower.reporting.facts.selected import selection_words
 from tractionpower.results.results import Results
@@ -77,6 +79,11 @@ class RunData:
         """Runs of the timetable on their routes, by identifier."""
         runs = plan_runs(self.scenario, sorted(self.scenario.runs, key=lambda run: run.id))
         return {planned.run.id: planned for planned in runs}
+
+    @cached_property
+    def kinds(self) -> dict[str, Train]:
+        """Kinds of trains of the timetable by name, those of most runs first."""
+        return kinds_of_trains((planned.run for planned in self.planned.values()), self.scenario.trains)
 
     @cached_property
     def ways(self) -> dict[str, dict[str, Any]]:

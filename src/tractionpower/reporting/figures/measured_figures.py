@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 from tractionpower.reporting.facts.series import peaks_kept
 from tractionpower.reporting.figures.base.axes import clock_label, set_clock
 from tractionpower.reporting.figures.base.drawing import FORMATS, remove_files, wanted
-from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, STYLE, VERMILION, new_figure, save_as, stems
+from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, PAGE, STYLE, VERMILION, new_figure, save_as, stems
+from tractionpower.reporting.texts import number, recorded, tr
 from tractionpower.results.results import Results
 
 Array = NDArray[Any]
 
-WIDTH, HEIGHT = 11.7, 6.0
+WIDTH, HEIGHT = PAGE, 6.6
 """Size of a figure [inches]."""
 
 MOST_FIGURES = 60
@@ -73,28 +74,28 @@ def overlay(rows: pd.DataFrame, figures: Any, title: str) -> Figure:
     in_time = bool(rows["time_s"].notna().any())
     x = rows["time_s" if in_time else "position_km"].to_numpy(float)
     measured, computed = rows["measured"].to_numpy(float), rows["computed"].to_numpy(float)
-    label = f"{str(figures.quantity).rpartition('_')[0].replace('_', ' ')} [{figures.unit}]"
+    label = f"{recorded(str(figures.quantity).rpartition('_')[0].replace('_', ' '))} [{figures.unit}]"
     with mpl.rc_context(STYLE):
         figure = new_figure(WIDTH, HEIGHT, 0.05)
-        grid = figure.add_gridspec(2, 2, width_ratios=(2.6, 1.0), height_ratios=(2.0, 1.0))
-        above = figure.add_subplot(grid[0, 0])
-        below = figure.add_subplot(grid[1, 0], sharex=above)
-        _line(above, x, measured, VERMILION, "measured")
-        _line(above, x, computed, BLUE, "computed")
+        grid = figure.add_gridspec(3, 2, width_ratios=(1.0, 1.1), height_ratios=(2.0, 1.0, 2.0))
+        above = figure.add_subplot(grid[0, :])
+        below = figure.add_subplot(grid[1, :], sharex=above)
+        _line(above, x, measured, VERMILION, tr("measured"))
+        _line(above, x, computed, BLUE, tr("computed"))
         above.set_ylabel(label)
-        above.legend(loc="best", fontsize=8)
+        above.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
         above.tick_params(labelbottom=False)
         below.axhline(0.0, color=INK, linewidth=0.6)
-        _line(below, x, computed - measured, GREY, "error")
-        below.set_ylabel(f"computed less\nmeasured [{figures.unit}]")
+        _line(below, x, computed - measured, GREY, tr("error"))
+        below.set_ylabel(tr("computed less\nmeasured [{unit}]", unit=figures.unit))
         if in_time:
             set_clock(below, float(np.nanmin(x)), float(np.nanmax(x)))
             below.set_xlabel(clock_label(below))
         else:
-            below.set_xlabel("place [km]")
-        _scatter(figure.add_subplot(grid[0, 1]), measured, computed, str(figures.unit))
-        _tell(figure.add_subplot(grid[1, 1]), figures)
-        figure.suptitle(f"{title}: {figures.series}", x=0.01, ha="left", fontsize=11)
+            below.set_xlabel(tr("place [km]"))
+        _scatter(figure.add_subplot(grid[2, 0]), measured, computed, str(figures.unit))
+        _tell(figure.add_subplot(grid[2, 1]), figures)
+        figure.suptitle(f"{title}: {figures.series}", x=0.01, ha="left")
     return figure
 
 
@@ -102,17 +103,20 @@ def shift_figure(search: pd.DataFrame, told: dict[str, Any], title: str) -> Figu
     """Draw the correlation over the shift of the clock."""
     shifts, correlation = search["shift_s"].to_numpy(float), search["correlation"].to_numpy(float)
     with mpl.rc_context(STYLE):
-        figure = new_figure(8.0, 4.0)
+        figure = new_figure(WIDTH, 3.2)
         axes = figure.add_subplot()
         axes.plot(shifts, correlation, color=BLUE, linewidth=1.2)
         if told.get("correlation") is not None:
             axes.axvline(told["shift_s"], color=VERMILION, linewidth=1.0)
-            words = f"{told['shift_s']:+.2f} s, correlation {told['correlation']:.3f}"
+            shift = signed(told["shift_s"], 2)
+            words = tr(
+                "{shift} s, correlation {correlation}", shift=shift, correlation=number(told["correlation"], 3, bare=False)
+            )
             axes.annotate(words, (told["shift_s"], 0.02), (4, 0), xycoords=("data", "axes fraction"), textcoords="offset points",
-                          fontsize=8, color=INK)  # fmt: skip
-        axes.set_xlabel("shift: added to the times of the measurement [s]")
-        axes.set_ylabel("correlation of measured and computed")
-        axes.set_title(f"{title}: shift of the clock", loc="left", fontsize=11)
+                          fontsize=7.5, color=INK)  # fmt: skip
+        axes.set_xlabel(tr("shift: added to the times of the measurement [s]"))
+        axes.set_ylabel(tr("correlation of\nmeasured and computed"))
+        figure.suptitle(tr("{title}: shift of the clock", title=title), x=0.01, ha="left")
     return figure
 
 
@@ -137,22 +141,42 @@ def _scatter(axes: Axes, measured: Array, computed: Array, unit: str) -> None:
     axes.set_xlim(*ends)
     axes.set_ylim(*ends)
     axes.set_aspect("equal")
-    axes.set_xlabel(f"measured [{unit}]")
-    axes.set_ylabel(f"computed [{unit}]")
+    axes.set_xlabel(tr("measured [{unit}]", unit=unit))
+    axes.set_ylabel(tr("computed [{unit}]", unit=unit))
+
+
+def signed(value: float, digits: int) -> str:
+    """Return a number with its sign, also where it is above zero."""
+    return f"{'+' if value >= 0.0 else ''}{number(value, digits)}"
+
+
+def digits_for(size: float) -> int:
+    """Return how many digits behind the sign five figures of numbers of a size need.
+
+    >>> digits_for(3200.0), digits_for(0.5)
+    (1, 5)
+    """
+    return int(np.clip(4 - np.floor(np.log10(max(size, 1e-3))), 0, 6)) if np.isfinite(size) else 1
 
 
 def _tell(axes: Axes, figures: Any) -> None:
     """Write the errors in words."""
     unit = figures.unit
+    size = digits_for(max(abs(figures.highest_measured), abs(figures.lowest_measured)))
     lines = [
-        f"mean error {figures.mean_error:+.4g} {unit}",
-        f"RMS error {figures.rms_error:.4g} {unit} ({figures.relative_percent:.2f} % of measured)",
-        f"correlation {figures.correlation:.4f}",
-        f"lowest {figures.lowest_measured:.5g} measured, {figures.lowest_computed:.5g} {unit} computed",
-        f"highest {figures.highest_measured:.5g} measured, {figures.highest_computed:.5g} {unit} computed",
+        tr("mean error {error} {unit}", error=signed(figures.mean_error, size), unit=unit),
+        tr("RMS error {error} {unit}", error=number(figures.rms_error, size), unit=unit),
+        tr("that is {percent} % of measured", percent=number(figures.relative_percent, 2)),
+        tr("correlation {correlation}", correlation=number(figures.correlation, 4)),
+        tr("lowest measured {value} {unit}", value=number(figures.lowest_measured, size), unit=unit),
+        tr("lowest computed {value} {unit}", value=number(figures.lowest_computed, size), unit=unit),
+        tr("highest measured {value} {unit}", value=number(figures.highest_measured, size), unit=unit),
+        tr("highest computed {value} {unit}", value=number(figures.highest_computed, size), unit=unit),
     ]
     if np.isfinite(figures.energy_error_percent):
-        lines.append(f"energy {figures.energy_error_percent:+.2f} % of {figures.energy_measured_kwh:.1f} kWh")
-    lines.append(f"{figures.rows} rows, {figures.share_percent:.1f} % of the computed ones")
+        percent, energy = signed(figures.energy_error_percent, 2), number(figures.energy_measured_kwh, 1)
+        lines.append(tr("energy {percent} % of {energy} kWh", percent=percent, energy=energy))
+    percent = number(figures.share_percent, 1)
+    lines.append(tr("{rows} rows, {percent} % of the computed ones", rows=figures.rows, percent=percent))
     axes.axis("off")
-    axes.text(0.0, 1.0, "\n".join(lines), va="top", fontsize=8, transform=axes.transAxes, linespacing=1.5)
+    axes.text(0.0, 1.0, "\n".join(lines), va="top", fontsize=7.5, transform=axes.transAxes, linespacing=1.5)

@@ -29,6 +29,7 @@ from tractionpower.reporting.figures.supply.ratings_figures import demand, devic
 from tractionpower.reporting.figures.supply.substation_figures import load_duration, substation_loads
 from tractionpower.reporting.figures.supply.useful_figures import useful_voltage_zones
 from tractionpower.reporting.figures.supply.voltage_figures import voltage_along_line, voltage_histogram
+from tractionpower.reporting.figures.trains.curve_figures import CURVES, run_curves
 from tractionpower.reporting.figures.trains.run_graph import run_graphs
 from tractionpower.reporting.figures.trains.train_figures import chosen_trains, train_figures
 from tractionpower.results.results import Results
@@ -63,7 +64,7 @@ OUTAGES = {
 }
 """Figures of a study of outages, by name, beside the maps by kilometre."""
 
-GROUPED: tuple[str, ...] = ()
+GROUPED = (CURVES,)
 """Beginnings of the names of figures of which a run has several."""
 
 TRAINS = "trains"
@@ -78,7 +79,8 @@ def write_figures(results: Results, scenario: Scenario, folder: Path) -> list[Pa
     """
     data = RunData(results, scenario)
     paths = [path for name, figure in _figures(data) for path in save_as(figure, folder, name)]
-    remove_files(files_of(folder, (*SINGLE, *GRAPHS)) - {*paths})
+    paths += _write_curves(data, folder)
+    remove_files(files_of(folder, (*SINGLE, *GRAPHS, *GROUPED)) - {*paths})
     chosen = [name for name in chosen_trains(data) if wanted(f"{TRAINS}/{name}")]
     names = stems(chosen)
     drawn = [path for train, figure in train_figures(data, chosen) for path in save_as(figure, folder / TRAINS, names[train])]
@@ -98,6 +100,13 @@ def write_outage_figures(results: Results, scenario: Scenario, folder: Path) -> 
     paths += [path for name, figure in outage_maps(outages, title) if wanted(name) for path in save_as(figure, folder, name)]
     remove_files(files_of(folder, (*OUTAGES, MAP)) - {*paths})
     return paths
+
+
+def _write_curves(data: RunData, folder: Path) -> list[Path]:
+    names = {name: stem for name, stem in stems(f"{CURVES}_{kind}" for kind in data.kinds).items() if wanted(name)}
+    if data.table("trains") is None or not names:
+        return []
+    return [path for name, figure in run_curves(data) for path in save_as(figure, folder, names[name])]
 
 
 def _figures(data: RunData) -> Iterator[tuple[str, Figure]]:

@@ -21,7 +21,7 @@ def test_both_runs_stand_in_every_panel():
         assert fixed.get_linestyle() != coupled.get_linestyle()
     assert fixed.get_label() == "currents computed at 3000 V"
     volts = rows["voltage_v"].min()
-    assert f"lowest voltage {volts:.0f} V instead of {volts - 100.0:.0f} V" in figure.axes[0].get_title(loc="left")
+    assert f"lowest voltage {volts:.0f} V instead of {volts - 100.0:.0f} V" in figure._suptitle.get_text()
     assert "full coupling against a constant voltage" in figure._suptitle.get_text()
 
 

@@ -22,7 +22,7 @@ def test_the_figure_has_all_curves_with_units(no_overlap):
     assert upper.get_ylabel() == "effort at the wheel [kN]"
     assert "[A]" in lower.get_ylabel()
     assert lower.get_xlabel() == "speed [km/h]"
-    labels = [text.get_text() for text in upper.get_legend().get_texts()]
+    labels = [text.get_text().replace("\n", " ") for text in upper.get_legend().get_texts()]
     assert labels[:6] == [f"effort at {volts} V" for volts in (2000, 2400, 2700, 3000, 3300, 3600)]
     assert {"adhesion limit", "electric brake", "resistance on level and gradients"} <= set(labels)
     assert [text.get_text() for text in upper.texts] == ["level", "5 ‰", "10 ‰", "20 ‰"]
@@ -83,7 +83,7 @@ def test_without_a_drive_there_is_the_resistance_only(no_overlap):
     figure = resistance_figure(curves, "Coach")
     (axes,) = figure.axes
     assert figure._suptitle.get_text() == "Coach, no drive"
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["resistance on level and gradients"]
+    assert [text.get_text().replace("\n", " ") for text in axes.get_legend().get_texts()] == ["resistance on level and gradients"]
     top = max(curves.resistance_n[20.0]) / 1000.0
     assert top < axes.get_ylim()[1] < 1.2 * top
     no_overlap(figure, axes.texts)

@@ -30,7 +30,13 @@ def names_above(figure):
 def test_panels_have_units_and_the_train_runs_from_left_to_right(line, backwards):
     journey = make_journey(line, "1", backwards=backwards)
     _, panels = draw(journey, line)
-    assert list(panels) == ["speed [km/h]", "height above start [m]", "effort at the wheel [kN]", "current at the pantograph [A]"]
+    assert list(panels) == [
+        "speed [km/h]",
+        "height [m]",
+        "gradient [‰]",
+        "effort at the wheel [kN]",
+        "current at the pantograph [A]",
+    ]
     speed = line_named(panels["speed [km/h]"], "speed")
     ends = [12.0, 0.5] if backwards else [0.5, 12.0]
     assert speed.get_xdata()[[0, -1]] == pytest.approx(ends)

@@ -26,7 +26,8 @@ def data():
 def draw(data, name):
     ((_, figure),) = train_figures(data, [name])
     figure.canvas.draw()
-    return figure, np.array(figure.axes[:8]).reshape(4, 2)
+    own = figure.axes
+    return figure, np.array([*own[:2], *own[3:9]]).reshape(4, 2)  # the third shows the height
 
 
 def line_named(axes, label):
@@ -49,7 +50,7 @@ def test_speed_voltage_and_current_stand_over_kilometres_and_over_time(data, nam
             whole = rows[column].iloc[:-1]  # without the step in which it leaves
             assert (line.get_ydata().min(), line.get_ydata().max()) == pytest.approx((whole.min(), whole.max()))
     assert [axes.get_ylabel().replace("\n", " ") for axes in grid[:, 0]] == [
-        "speed [km/h]", "height [m]", "voltage at the pantograph [V]", "current at the pantograph [A]"
+        "speed [km/h]", "gradient [‰]", "voltage at the pantograph [V]", "current at the pantograph [A]"
     ]  # fmt: skip
     assert "[km], track" in grid[3, 0].get_xlabel()
     assert grid[3, 1].get_xlabel() == "time of day [h:min]"
@@ -58,15 +59,17 @@ def test_speed_voltage_and_current_stand_over_kilometres_and_over_time(data, nam
 
 
 def test_limits_of_speed_and_current_are_those_of_the_line(data):
-    _, grid = draw(data, "2")
+    figure, grid = draw(data, "2")
     limit = line_named(grid[0, 0], "permitted speed of the line")
     assert limit.get_xdata().tolist() == [0.0, 12.0, 20.0]
     assert limit.get_ydata() == pytest.approx([160.0, 120.0, 120.0])
     current = line_named(grid[3, 0], "train current limit of the line")
     assert current.get_ydata()[0] == 1600.0
     assert np.isnan(current.get_ydata()[-1])
-    height = grid[1, 0].lines[0]
-    assert height.get_ydata().max() == pytest.approx(32.0)  # 8 km at 4 permille
+    assert figure.axes[2].lines[0].get_ydata().max() == pytest.approx(32.0)  # 8 km at 4 permille
+    gradient = grid[1, 0].lines[0]
+    assert gradient.get_xdata() == pytest.approx([0.0, 8.0, 20.0])
+    assert gradient.get_ydata() == pytest.approx([4.0, -3.0, -3.0])
 
 
 def test_the_title_tells_the_worst_voltage_and_current(data):
@@ -84,7 +87,9 @@ def test_stations_and_substations_are_named_and_nothing_overlaps(data, no_overla
     devices = grid[2, 0].texts
     assert [text.get_text() for text in stations] == ["Alfa", "Ćma", "Beta"]
     assert {text.get_text() for text in devices} == {"▲", "■", "A", "B", "C"}
-    no_overlap(figure, [*stations, *devices, *grid[2, 1].texts, grid[1, 0].yaxis.label, grid[0, 0].yaxis.label])
+    no_overlap(
+        figure, [*stations, *devices, *grid[2, 1].texts, figure.axes[2].yaxis.label, *(axes.yaxis.label for axes in grid[:, 0])]
+    )
 
 
 def test_a_line_of_many_devices_has_no_name_over_another(no_overlap):

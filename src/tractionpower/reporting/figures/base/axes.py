@@ -13,10 +13,14 @@ from tractionpower.model.limits import find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.figures.base.labels import LETTER, LINE, clock, clock_ticks, fitting
 from tractionpower.reporting.figures.base.style import GREY, INK
+from tractionpower.reporting.texts import number, tr
 
 LIMITS = {"u_min2": "U_min2", "u_n": "U_n", "u_max1": "U_max1", "u_max2": "U_max2"}
 """Limits of the voltage that are drawn, and how they are written."""
 
+
+LAYOUT = 0.7
+"""Share of the height of axes that titles, labels and legends may leave of them when the figure gets its layout."""
 
 DEAD_V = 1.0
 """A line with no more than this is dead [V]."""
@@ -51,7 +55,7 @@ def set_clock(axes: Axes, begin_s: float, end_s: float, most: int = 10) -> None:
 
 def clock_label(axes: Axes) -> str:
     """Return the label of an axis that is a clock."""
-    return "time of day [h:min:s]" if any(tick % 60 for tick in axes.get_xticks()) else "time of day [h:min]"
+    return tr("time of day [h:min:s]") if any(tick % 60 for tick in axes.get_xticks()) else tr("time of day [h:min]")
 
 
 def voltage_range(lowest: float, highest: float, room: float = 0.3) -> tuple[float, float]:
@@ -78,6 +82,7 @@ def draw_limits(axes: Axes, scenario: Scenario, *, names: bool = True) -> None:
     low, high = axes.get_ylim()
     limits = sorted(limits_between(scenario, low, high), key=lambda limit: limit[1])
     inches = (high - low) / max(axes.get_window_extent().height / axes.figure.dpi, 0.1)
+    inches /= LAYOUT
     gaps = [(after - value) / inches for (_, value), (_, after) in pairwise(limits)]
     for k, (shown, value) in enumerate(limits):
         axes.axhline(value, color=GREY, linewidth=0.9, linestyle=(0, (5, 3)), zorder=1.5)
@@ -89,7 +94,7 @@ def draw_limits(axes: Axes, scenario: Scenario, *, names: bool = True) -> None:
         above = k > 0 and gaps[k - 1] < 1.2 * LINE
         below = k < len(gaps) and gaps[k] < 1.2 * LINE
         axes.annotate(
-            f"{shown}{apart}{value:g} V", (1.0, value), (3, 0), xycoords=("axes fraction", "data"),
+            f"{shown}{apart}{number(value, 1)} V", (1.0, value), (3, 0), xycoords=("axes fraction", "data"),
             textcoords="offset points", ha="left", va="bottom" if above else "top" if below else "center", color=INK,
             fontsize=7.5, linespacing=1.0,
         )  # fmt: skip
@@ -107,7 +112,7 @@ def mark_devices(axes: Axes, devices: Sequence[tuple[float, str, bool]], inches:
     named = set(fitting(places, important, [(len(name) + 2) * LETTER * per_inch for _, name, _ in devices]))
     signed = set(fitting(places, [k in named for k in range(len(places))], 0.12 * per_inch))
     for k, (place, name, substation) in enumerate(devices):
-        axes.axvline(place, color=GREY, linewidth=0.7 if substation else 0.5, alpha=0.6, zorder=0.5)
+        axes.axvline(place, color=GREY, linewidth=0.6 if substation else 0.5, alpha=0.4, zorder=0.5)
         if names and k in signed:
             style: Any = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points", "ha": "center", "color": INK}
             axes.annotate("▲" if substation else "■", (place, 1.0), (0, 1), va="bottom", fontsize=6.5, **style)

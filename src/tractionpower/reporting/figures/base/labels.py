@@ -21,7 +21,16 @@ def row_name(text: str) -> str:
     >>> row_name("track 1")
     'track 1'
     """
-    return text if len(text) <= MOST_LETTERS else f"{text[: MOST_LETTERS - 1]}…"
+    return shortened(text, MOST_LETTERS)
+
+
+def shortened(text: str, most: int) -> str:
+    """Return a text of `most` letters at most; of a longer one the beginning.
+
+    >>> shortened("Grodzisk Mazowiecki", 10)
+    'Grodzisk …'
+    """
+    return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
 def fitting(places: Sequence[float], important: Sequence[bool], gap: float | Sequence[float]) -> list[int]:

@@ -16,8 +16,10 @@ from tractionpower.alignment.profile import PathLeg
 from tractionpower.alignment.routes import stop_distance
 from tractionpower.model.line import Line
 from tractionpower.model.supply import Substation
+from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.figures.base.labels import LETTER, fitting
 from tractionpower.reporting.figures.base.style import GREY, INK, ORANGE, PALE, PURPLE
+from tractionpower.reporting.texts import mark, number, tr
 from tractionpower.supply.site import Site
 
 Array = NDArray[Any]
@@ -28,7 +30,7 @@ MOST_JOINTS = 2
 BESIDE_M = 100.0
 """Places where one device meets two tracks of a route count as one if they are this near to each other [m]."""
 
-CEILING = "ceiling: limits under the\nwhole train, braking curves"
+CEILING = mark("ceiling: limits under the\nwhole train, braking curves")
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,19 +73,23 @@ def course_of(path: RoutePath) -> Course:
     sign = 1 if km[-1] >= km[0] else -1
     if np.abs(km - km[0] - sign * probe / 1000.0).max() > 0.001:  # the kilometrage jumps somewhere
         joints = [(before, leg) for before, leg in pairwise(path.legs) if abs(_ends(before)[1] - _ends(leg)[0]) > 0.001]
-        label = "distance from the start of the route [km]"
+        label = tr("distance from the start of the route [km]")
         if 0 < len(joints) <= MOST_JOINTS:
             starts = [path.legs[0], *(leg for _, leg in joints)]
             ends = [*(before for before, _ in joints), path.legs[-1]]
             ways = [
-                f"track {leg.axis.track} km {_ends(leg)[0]:g} to {_end_in_words(leg, end)}"
+                tr(
+                    "track {track} km {begin} to {end}",
+                    track=leg.axis.track,
+                    begin=number(_ends(leg)[0], 3),
+                    end=_end_in_words(leg, end),
+                )
                 for leg, end in zip(starts, ends, strict=True)
             ]
-            label += f":\n{', then '.join(ways)}"
+            label += f":\n{tr(', then ').join(ways)}"
         return Course(0.0, 1, path.length_m, label, tuple(leg.start_m for _, leg in joints))
     names = list(dict.fromkeys(leg.axis.track for leg in path.legs))
-    tracks = f"track{'s' if len(names) > 1 else ''} {', '.join(names)}"
-    return Course(float(km[0]), sign, path.length_m, f"kilometre of the line [km], {tracks}")
+    return Course(float(km[0]), sign, path.length_m, tr("kilometre of the line [km], {tracks}", tracks=told(names)))
 
 
 def _ends(leg: PathLeg) -> tuple[float, float]:
@@ -93,8 +99,8 @@ def _ends(leg: PathLeg) -> tuple[float, float]:
 
 
 def _end_in_words(leg: PathLeg, end: PathLeg) -> str:
-    track = "" if end.axis.track == leg.axis.track else f"track {end.axis.track} km "
-    return f"{track}{_ends(end)[1]:g}"
+    km = number(_ends(end)[1], 3)
+    return km if end.axis.track == leg.axis.track else tr("track {track} km {km}", track=end.axis.track, km=km)
 
 
 def draw_joints(panels: Sequence[Axes], course: Course) -> None:
@@ -102,7 +108,7 @@ def draw_joints(panels: Sequence[Axes], course: Course) -> None:
     for axes in panels:
         for joint in course.joints_m:
             style: Any = {"color": PURPLE, "linewidth": 1.0, "linestyle": (0, (6, 2, 1, 2)), "zorder": 0.6}
-            axes.axvline(course.at(joint), label="change to other kilometres", **style)
+            axes.axvline(course.at(joint), label=tr("change to other kilometres"), **style)
 
 
 def stations_along(path: RoutePath, line: Line) -> list[tuple[float, str]]:
@@ -117,7 +123,7 @@ def route_in_words(path: RoutePath, end_m: float, line: Line) -> str:
     ends = []
     for place in (0.0, end_m):
         track, km = path.place(place)
-        ends.append(named.get(round(place), f"track {track}, km {km:.1f}"))
+        ends.append(named.get(round(place), tr("track {track}, km {km}", track=track, km=number(km, 1, bare=False))))
     return " – ".join(ends)
 
 
@@ -160,9 +166,9 @@ def name_stations(
 def draw_permitted_speed(axes: Axes, path: RoutePath, pieces: NDArray[np.void], course: Course) -> None:
     """Draw the speed limit of the line and the ceiling of the train, records of `PIECE`."""
     at, ceiling = _ceiling(pieces)
-    axes.fill_between(course.at(at), ceiling, color=PALE, alpha=0.7, lw=0, label=CEILING)
+    axes.fill_between(course.at(at), ceiling, color=PALE, alpha=0.7, lw=0, label=tr(CEILING))
     at = course.at(np.append(path.limit_from_m, path.length_m))
-    stairs(axes, at, 3.6 * path.limit_mps, color=GREY, linewidth=1.0, label="permitted speed of the line")
+    stairs(axes, at, 3.6 * path.limit_mps, color=GREY, linewidth=1.0, label=tr("permitted speed of the line"))
 
 
 def _ceiling(pieces: NDArray[np.void]) -> tuple[Array, Array]:
@@ -181,10 +187,24 @@ def draw_height(axes: Axes, path: RoutePath, course: Course) -> None:
     low, high = float(height.min()), float(height.max())
     axes.fill_between(course.at(at), low, height, color=ORANGE, alpha=0.35, lw=0)
     axes.plot(course.at(at), height, color=INK, linewidth=0.9)
-    axes.set(ylabel="height above\nstart [m]")
+    axes.set_ylabel(tr("height\n[m]"), fontsize=7.5)
     axes.set_ylim(low, max(high, low + 5.0) + 0.1 * (high - low))
     if high == low:
-        axes.annotate("level", (0.5, 0.5), xycoords="axes fraction", ha="center", va="center", fontsize=8, color=INK)
+        axes.annotate(tr("level"), (0.5, 0.5), xycoords="axes fraction", ha="center", va="center", fontsize=8, color=INK)
+
+
+def draw_gradient(axes: Axes, path: RoutePath, course: Course) -> None:
+    """Draw the gradient along a route; rising in the direction of travel is above zero."""
+    inside = np.flatnonzero((path.at_m[1:] > 0.0) & (path.at_m[:-1] < path.length_m))
+    permille = 1000.0 * np.diff(path.height_m) / np.diff(path.at_m)
+    at = course.at(np.clip(np.append(path.at_m[inside], path.at_m[inside[-1] + 1]), 0.0, path.length_m))
+    values = last_twice(permille[inside])
+    axes.fill_between(at, 0.0, values, step="post", color=ORANGE, alpha=0.35, lw=0)
+    axes.plot(at, values, drawstyle="steps-post", color=INK, linewidth=0.7)
+    axes.axhline(0.0, color=INK, linewidth=0.5)
+    most = max(1.0, float(np.abs(values).max()))
+    axes.set_ylim(-1.15 * most, 1.15 * most)
+    axes.set_ylabel(tr("gradient\n[‰]"), fontsize=7.5)
 
 
 def draw_current_limit(axes: Axes, path: RoutePath, course: Course) -> None:
@@ -194,7 +214,7 @@ def draw_current_limit(axes: Axes, path: RoutePath, course: Course) -> None:
     at = course.at(np.append(path.current_from_m, path.length_m))
     limit = np.where(np.isfinite(path.max_current_a), path.max_current_a, np.nan)
     dashes: Any = (0, (4, 2))
-    stairs(axes, at, limit, color=GREY, linewidth=1.0, linestyle=dashes, label="train current limit of the line")
+    stairs(axes, at, limit, color=GREY, linewidth=1.0, linestyle=dashes, label=tr("train current limit of the line"))
 
 
 def last_twice(values: Array) -> Array:

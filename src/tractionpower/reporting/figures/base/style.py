@@ -32,13 +32,18 @@ PAGE = 16.0 / 2.54
 SMALLEST = 7.0
 """Smallest text of a figure [pt]."""
 
-TITLE = 10.0
+TITLE = 9.5
 """Size of a title [pt]."""
 
 MOST_TITLE_LINES = 4
 
 STYLE: Any = {
-    "font.size": 9.0,
+    "font.size": 8.5,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "legend.fontsize": 8.0,
+    "axes.titlesize": TITLE,
+    "figure.titlesize": TITLE,
     "axes.grid": True,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -127,6 +132,7 @@ def finish(figure: Figure) -> None:
     _write_source(figure, engine, current_drawing().source)
     if figure.axes:
         engine.execute(figure)
+    _lift_legends(figure, engine)
     figure.set_layout_engine("none")
 
 
@@ -149,6 +155,7 @@ def _wrap_title(figure: Figure) -> None:
     title: Text | None = getattr(figure, "_suptitle", None)
     if title is None:
         return
+    title.set_fontsize(TITLE)
     room = 0.98 * float(figure.bbox.width)
     title.set_text(wrapped(title, title.get_text(), room, MOST_TITLE_LINES))
 
@@ -198,10 +205,15 @@ def _write_source(figure: Figure, engine: ConstrainedLayoutEngine, source: str) 
     figure.set_size_inches(width, height + line)
     share = line / (height + line)
     engine.set(rect=(0.0, share, 1.0, 1.0 - share))
-    for legend in figure.legends:
-        legend.set_bbox_to_anchor(Bbox.from_bounds(0.0, share, 1.0, 1.0 - share), transform=figure.transFigure)
     text = figure.text(0.01, 0.35 * share, "", fontsize=SMALLEST, color=GREY, va="bottom", ha="left", in_layout=False)
     text.set_text(wrapped(text, source, 0.98 * float(figure.bbox.width), 1))
+
+
+def _lift_legends(figure: Figure, engine: ConstrainedLayoutEngine) -> None:
+    """Set legends that stand outside of all axes above the source; the layout has kept room for them there."""
+    rect = engine.get()["rect"]
+    for legend in figure.legends if rect[1] > 0.0 else ():
+        legend.set_bbox_to_anchor(Bbox.from_bounds(*rect), transform=figure.transFigure)
 
 
 def _about(figure: Figure, kind: str) -> dict[str, Any]:

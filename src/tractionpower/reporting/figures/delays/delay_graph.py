@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.facts.run_data import RunData
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.delays.delay_layer import DelayedStretch, DelayLabel, DelayLayer
 from tractionpower.reporting.figures.delays.delay_styles import main_origin
 from tractionpower.reporting.figures.trains.run_graph import (
@@ -23,8 +24,12 @@ from tractionpower.reporting.figures.trains.run_graph import (
     train_lines,
 )
 from tractionpower.reporting.figures.trains.train_graph import MOST_NAMES, GraphPanel, TrainLine, train_graph
+from tractionpower.reporting.texts import tr
 
 Parts = Sequence[tuple[int, TrainLine]]
+
+MOST_NAME_LETTERS = 20
+"""Letters of a train's name in a label."""
 
 CARRIED_SHARE = 0.5
 """A stretch carries delay on if knock-on is more than this share of it."""
@@ -41,10 +46,10 @@ def delay_graphs(data: RunData) -> dict[str, Figure]:
     if late.empty or not parts:
         return {}
     begin, end = float(trains["time_s"].min()), max(float(line.time_s[-1]) for _, line in parts)
-    graphs = {"delay_graph": _graph(data, parts, delays, (begin, end), "train graph, late trains by cause")}
+    graphs = {"delay_graph": _graph(data, parts, delays, (begin, end), tr("train graph, late trains by cause"))}
     if len({line.name for _, line in parts}) > MOST_NAMES and end - begin > FINE_S:
         window = worst_hours(late, begin, end)
-        graphs["delay_graph_fine"] = _graph(data, parts, delays, window, "the two hours in which trains are latest, by cause")
+        graphs["delay_graph_fine"] = _graph(data, parts, delays, window, tr("the two hours in which trains are latest, by cause"))
     return graphs
 
 
@@ -136,5 +141,5 @@ def _label(line: TrainLine, rows: pd.DataFrame, tolerance_s: float, *, named: bo
     known = np.isfinite(line.km)
     km = float(np.interp(worst["actual_s"], line.time_s[known], line.km[known]))
     seconds = float(worst["delay_s"])
-    text = f"{line.name} +{seconds:.0f} s" if named else f"+{seconds:.0f} s"
+    text = f"{shortened(line.name, MOST_NAME_LETTERS)} +{seconds:.0f} s" if named else f"+{seconds:.0f} s"
     return DelayLabel(float(worst["actual_s"]), km, text, seconds)

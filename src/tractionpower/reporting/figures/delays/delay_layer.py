@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tractionpower.reporting.figures.base.labels import LETTER, LINE
 from tractionpower.reporting.figures.base.style import INK
 from tractionpower.reporting.figures.delays.delay_styles import CAUSES
+from tractionpower.reporting.texts import tr
 
 WIDTHS = {False: (2.8, 1.3), True: (1.7, 0.8)}
 """Widths of lines where seconds are lost, and where they are only carried on [pt]; narrower ones for many trains."""
@@ -72,7 +73,8 @@ def draw_delays(axes: Axes, layer: DelayLayer, width_inches: float, height_inche
         for stretch in layer.stretches:
             if stretch.cause == name:
                 width = carried if stretch.carried else new
-                label = f"late by {style.words}" + (", carried on" if stretch.carried else "")
+                cause = tr(style.words)
+                label = tr("late by {cause}, carried on", cause=cause) if stretch.carried else tr("late by {cause}", cause=cause)
                 axes.plot(stretch.time_s, stretch.km, color=style.colour, linestyle=style.dashes, linewidth=width, label=label,
                           zorder=2.5, dash_capstyle="butt")  # fmt: skip
     shown = sorted(layer.labels, key=lambda each: -each.delay_s)[: MOST_LABELS[layer.many]]

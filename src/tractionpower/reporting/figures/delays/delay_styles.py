@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tractionpower.reporting.figures.base.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, VERMILION
+from tractionpower.reporting.texts import mark, tr
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,13 +23,13 @@ class CauseStyle:
 
 
 CAUSES: dict[str, CauseStyle] = {
-    "voltage": CauseStyle("low voltage", VERMILION, "-", ""),
-    "current_limit": CauseStyle("train current limit", ORANGE, (0, (5, 1.2)), "////"),
-    "timetable": CauseStyle("timetable too tight", PURPLE, (0, (1, 1)), "...."),
-    "driving": CauseStyle("driving plan", GREEN, (0, (6, 1.2, 1, 1.2)), "\\\\\\\\"),
-    "dwell": CauseStyle("dwell at stops", BLUE, (0, (2.5, 1.2)), "xxxx"),
-    "knock_on": CauseStyle("delay from before", GREY, "-", "----"),
-    "not_reached": CauseStyle("not there", INK, "-", "++++"),
+    "voltage": CauseStyle(mark("low voltage"), VERMILION, "-", ""),
+    "current_limit": CauseStyle(mark("train current limit"), ORANGE, (0, (5, 1.2)), "////"),
+    "timetable": CauseStyle(mark("timetable too tight"), PURPLE, (0, (1, 1)), "...."),
+    "driving": CauseStyle(mark("driving plan"), GREEN, (0, (6, 1.2, 1, 1.2)), "\\\\\\\\"),
+    "dwell": CauseStyle(mark("dwell at stops"), BLUE, (0, (2.5, 1.2)), "xxxx"),
+    "knock_on": CauseStyle(mark("delay from before"), GREY, "-", "----"),
+    "not_reached": CauseStyle(mark("not there"), INK, "-", "++++"),
 }
 """Causes by name, in the order in which they are shown."""
 
@@ -42,7 +43,7 @@ def cause_in_words(name: str | None) -> str:
     >>> cause_in_words("current_limit"), cause_in_words(None)
     ('train current limit', '')
     """
-    return CAUSES[name].words if name in CAUSES else (name or "")
+    return tr(CAUSES[name].words) if name in CAUSES else (name or "")
 
 
 def main_origin(row: Mapping[str, Any] | Any) -> str:

@@ -11,14 +11,16 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tractionpower.reporting.facts.formations import kind_of
 from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.figures.base.axes import mark_devices, with_margin
-from tractionpower.reporting.figures.base.labels import LETTER
-from tractionpower.reporting.figures.base.style import COLOURS, GREY, INK, STYLE, new_figure
+from tractionpower.reporting.figures.base.labels import LETTER, shortened
+from tractionpower.reporting.figures.base.style import COLOURS, GREY, INK, PAGE, STYLE, new_figure
 from tractionpower.reporting.figures.delays.delay_styles import CAUSES, ORIGINS
+from tractionpower.reporting.texts import number, tr
 
-WIDTH = 11.7
+WIDTH = PAGE
 """Width of the figures [inches]."""
 
 LEAST_S = 0.05
@@ -51,35 +53,39 @@ def lost_time(data: RunData) -> Figure | None:
     lost = lost.assign(kind=_kinds(data, lost, classes))
     lines = [tracks for tracks in data.places.lines if lost["track"].isin(list(tracks)).any()]
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 1.6 + 3.4 * len(lines))
+        figure = new_figure(WIDTH, 1.2 + 2.6 * len(lines))
         panels = list(figure.subplots(len(lines), 1, squeeze=False)[:, 0])
         for axes, tracks in zip(panels, lines, strict=True):
             own = lost[lost["track"].isin(list(tracks))]
             _draw_lost(axes, own, classes)
             axes.set_xlim(*with_margin(*_ends(data, tracks)))
             _write_areas(axes, own)
-            mark_devices(axes, data.places.devices(tracks), WIDTH - 1.2)
-            axes.set_xlabel(f"kilometre of the line [km], {told(tracks)}")
-            axes.set_ylabel("lost to low voltage,\nall trains [s per km]")
+            mark_devices(axes, data.places.devices(tracks), WIDTH - 0.8)
+            axes.set_xlabel(tr("kilometre of the line [km], {tracks}", tracks=told(tracks)))
+            axes.set_ylabel(tr("lost to low voltage,\nall trains [s per km]"))
         total = float(lost.loc[lost["lost_s"] > 0.0, "lost_s"].sum())
         figure.suptitle(
-            f"{data.title}: {total:.0f} s lost to low voltage, by place and type of train", x=0.01, ha="left", fontsize=11
+            tr(
+                "{study}: {seconds} s lost to low voltage, by place and type of train", study=data.title, seconds=number(total, 0)
+            ),
+            x=0.01,
+            ha="left",
         )
-        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8)
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
         return figure
 
 
 def _classes(data: RunData, lost: pd.DataFrame) -> list[str]:
     """Return types of trains by the seconds that they lose, the greatest first; the last stands for all others."""
-    kinds = pd.Series({run.id: run.train or "vehicles of its own" for run in data.scenario.runs}, dtype=object)
-    sums = lost["lost_s"].clip(lower=0.0).groupby(lost["train"].astype(str).map(kinds).fillna("unknown")).sum()
+    kinds = pd.Series({run.id: kind_of(run) for run in data.scenario.runs}, dtype=object)
+    sums = lost["lost_s"].clip(lower=0.0).groupby(lost["train"].astype(str).map(kinds).fillna(tr("unknown"))).sum()
     order = [str(name) for name in sums.sort_values(ascending=False, kind="stable").index]
-    return order if len(order) <= MOST_CLASSES else [*order[: MOST_CLASSES - 1], "other trains"]
+    return order if len(order) <= MOST_CLASSES else [*order[: MOST_CLASSES - 1], tr("other trains")]
 
 
 def _kinds(data: RunData, lost: pd.DataFrame, classes: Sequence[str]) -> Any:
-    kinds = {run.id: run.train or "vehicles of its own" for run in data.scenario.runs}
-    names = [kinds.get(str(train), "unknown") for train in lost["train"]]
+    kinds = {run.id: kind_of(run) for run in data.scenario.runs}
+    names = [kinds.get(str(train), tr("unknown")) for train in lost["train"]]
     return [name if name in classes else classes[-1] for name in names]
 
 
@@ -88,10 +94,10 @@ def _draw_lost(axes: Axes, rows: pd.DataFrame, classes: Sequence[str]) -> None:
     km = np.sort(rows["km"].round(6).unique())
     above = np.zeros(len(km))
     axes.set_axisbelow(True)
-    for number, name in enumerate(classes):
+    for k, name in enumerate(classes):
         seconds = _by_km(rows[(rows["kind"] == name) & (rows["lost_s"] > 0.0)], km)
-        style: Any = {"color": COLOURS[number % len(COLOURS)], "hatch": HATCHES[number], "edgecolor": "white", "linewidth": 0.4}
-        axes.bar(km, seconds, 1.0, bottom=above, label=name, **style)
+        style: Any = {"color": COLOURS[k % len(COLOURS)], "hatch": HATCHES[k], "edgecolor": "white", "linewidth": 0.4}
+        axes.bar(km, seconds, 1.0, bottom=above, label=shortened(name, 40), **style)
         above = above + seconds
     axes.axhline(0.0, color=INK, linewidth=0.8)
     axes.set_ylim(0.0, 1.32 * max(float(above.max()), LEAST_S))
@@ -106,12 +112,14 @@ def _write_areas(axes: Axes, rows: pd.DataFrame) -> None:
     """Write what is lost in the area of each substation above its stretch, where there is room."""
     taken: list[tuple[float, float, float]] = []
     left, right = axes.get_xlim()
-    per_inch = (right - left) / (WIDTH - 1.2)
+    per_inch = (right - left) / (WIDTH - 0.8)
     positive = rows[rows["lost_s"] > 0.0]
     sums = positive["lost_s"].groupby(positive["area"].astype(str)).sum().sort_values(ascending=False, kind="stable")
     for area, seconds in sums[sums >= LEAST_S].items():
         own = positive[positive["area"].astype(str) == area]
-        text = f"area of {area}: {seconds:.0f} s" if seconds >= 9.95 else f"area of {area}: {seconds:.1f} s"
+        text = tr(
+            "area of {area}: {seconds} s", area=shortened(str(area), 30), seconds=number(seconds, 0 if seconds >= 9.95 else 1)
+        )
         wide = (LETTER * len(text) + 0.15) * per_inch
         at = float(np.average(own["km"], weights=own["lost_s"]))
         at = min(max(at, left + wide / 2), right - wide / 2)
@@ -119,7 +127,7 @@ def _write_areas(axes: Axes, rows: pd.DataFrame) -> None:
             if all(level != other or abs(at - x) > (wide + w) / 2 for x, w, other in taken):
                 taken.append((at, wide, level))
                 axes.annotate(
-                    text, (at, level), xycoords=("data", "axes fraction"), ha="center", va="top", fontsize=8, color=INK,
+                    text, (at, level), xycoords=("data", "axes fraction"), ha="center", va="top", fontsize=7.5, color=INK,
                     bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85},
                 )  # fmt: skip
                 break
@@ -142,19 +150,27 @@ def delays_by_cause(data: RunData) -> Figure | None:
     worst = worst.sort_values(["delay_s", "train"], ascending=[False, True], kind="stable")
     shown = worst.head(MOST_TRAINS)
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 1.9 + 0.3 * len(shown))
+        figure = new_figure(WIDTH, 1.5 + 0.24 * len(shown))
         axes = figure.add_subplot()
         _draw_causes(axes, shown)
         names = {station.id: station.name or station.id for station in data.scenario.line.stations}
-        axes.set_yticks(np.arange(len(shown)), [f"{train}" for train in shown["train"]])
+        axes.set_yticks(np.arange(len(shown)), [shortened(str(train), 24) for train in shown["train"]])
         for place, (_, row) in enumerate(shown.iterrows()):
-            text = f"{row['delay_s']:.0f} s at {names.get(str(row['station']), row['station'])}"
-            axes.annotate(text, (row["delay_s"], place), (4, 0), textcoords="offset points", va="center", fontsize=8, color=INK)
-        axes.set_xlim(0.0, 1.3 * float(shown["delay_s"].max()))
-        axes.set_xlabel("delay where the train is latest [s], by where the seconds first arose")
-        more = f", the {len(shown)} latest of {len(worst)} late trains" if len(worst) > len(shown) else ""
-        axes.set_title(f"{data.title}: delays by cause{more}", loc="left")
-        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize=8)
+            where = shortened(str(names.get(str(row["station"]), row["station"])), 30)
+            text = tr("{seconds} s at {station}", seconds=number(float(row["delay_s"]), 0), station=where)
+            axes.annotate(text, (row["delay_s"], place), (4, 0), textcoords="offset points", va="center", fontsize=7.5, color=INK)
+        axes.set_xlim(0.0, 1.45 * float(shown["delay_s"].max()))
+        axes.set_xlabel(tr("delay where the train is latest [s], by where the seconds first arose"))
+        title = tr("{study}: delays by cause", study=data.title)
+        if len(worst) > len(shown):
+            title = tr(
+                "{study}: delays by cause, the {some} latest of {all} late trains",
+                study=data.title,
+                some=len(shown),
+                all=len(worst),
+            )
+        figure.suptitle(title, x=0.01, ha="left")
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
         return figure
 
 
@@ -165,7 +181,7 @@ def _draw_causes(axes: Axes, shown: pd.DataFrame) -> None:
         if seconds.max() > 0.0:
             style = CAUSES[name]
             axes.barh(place, seconds, 0.62, left=base, color=style.colour, hatch=style.hatch, edgecolor="white", linewidth=0.4,
-                      label=style.words)  # fmt: skip
+                      label=tr(style.words))  # fmt: skip
             base = base + seconds
     axes.set_ylim(len(shown) - 0.4, -0.6)
     axes.set_axisbelow(True)

@@ -20,13 +20,14 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.facts.series import peaks_kept
 from tractionpower.reporting.figures.base.axes import clock_label, draw_limits, set_clock, voltage_range
-from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, STYLE, VERMILION, new_figure, save
+from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, PAGE, STYLE, VERMILION, new_figure, save
+from tractionpower.reporting.texts import mark, number, tr
 from tractionpower.results.results import Results
 
 PANELS = (
-    ("speed_kmh", "speed [km/h]"),
-    ("voltage_v", "voltage at the\npantograph [V]"),
-    ("current_a", "current at the\npantograph [A]"),
+    ("speed_kmh", mark("speed [km/h]")),
+    ("voltage_v", mark("voltage at the\npantograph [V]")),
+    ("current_a", mark("current at the\npantograph [A]")),
 )
 
 
@@ -55,24 +56,29 @@ def compare_coupling(full: Results, constant: Results, scenario: Scenario, train
     nominal = system_voltages(scenario.limits, scenario.supply.system).u_n
     fixed = constant.run.get("coupling_voltage_v") or nominal
     shown: tuple[tuple[pd.DataFrame, str, str, Any], ...] = (
-        (_rows(RunData(constant, scenario), train), f"currents computed at {fixed:g} V", VERMILION, (0, (5, 2))),
-        (_rows(RunData(full, scenario), train), "currents follow the voltage (full coupling)", BLUE, "-"),
+        (
+            _rows(RunData(constant, scenario), train),
+            tr("currents computed at {voltage} V", voltage=number(fixed)),
+            VERMILION,
+            (0, (5, 2)),
+        ),
+        (_rows(RunData(full, scenario), train), tr("currents follow the voltage (full coupling)"), BLUE, "-"),
     )
     with mpl.rc_context(STYLE):
-        figure = new_figure(10.5, 7.2)
+        figure = new_figure(PAGE, 5.4)
         panels = figure.subplots(len(PANELS), sharex=True)
         for axes, (column, label) in zip(panels, PANELS, strict=True):
             for rows, words, colour, dashes in shown:
                 values = rows[column].to_numpy(float)
                 kept = peaks_kept(values, 3000)
                 steps: Any = "default" if column == "speed_kmh" else "steps-post"
-                axes.plot(rows["time_s"].to_numpy()[kept], values[kept], color=colour, linestyle=dashes, linewidth=1.4,
+                axes.plot(rows["time_s"].to_numpy()[kept], values[kept], color=colour, linestyle=dashes, linewidth=1.1,
                           drawstyle=steps, label=words)  # fmt: skip
-            axes.set_ylabel(label)
+            axes.set_ylabel(tr(label))
         volts = np.concatenate([rows["voltage_v"].to_numpy(float) for rows, *_ in shown])
         panels[1].set_ylim(*voltage_range(float(np.nanmin(volts)), float(np.nanmax(volts))))
         panels[1].axhline(
-            fixed, color=GREY, linewidth=1.0, linestyle=(0, (1, 1.5)), label="voltage that currents are computed at"
+            fixed, color=GREY, linewidth=1.0, linestyle=(0, (1, 1.5)), label=tr("voltage that currents are computed at")
         )
         draw_limits(panels[1], scenario)
         panels[0].set_ylim(0.0, None)
@@ -81,10 +87,9 @@ def compare_coupling(full: Results, constant: Results, scenario: Scenario, train
                   max(float(rows["time_s"].iloc[-1]) for rows, *_ in shown))  # fmt: skip
         panels[-1].set_xlabel(clock_label(panels[-1]))
         handles, labels = panels[1].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8)
-        panels[0].set_title(_facts(shown[1][0], shown[0][0]), loc="left", fontsize=8.5)
-        title = f"{scenario.name}: train {train}, full coupling against a constant voltage".lstrip(": ")
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11)
+        figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=7.5)
+        title = tr("{study}: train {train}, full coupling against a constant voltage", study=scenario.name, train=train)
+        figure.suptitle(f"{title.lstrip(': ')}\n{_facts(shown[1][0], shown[0][0])}", x=0.01, ha="left")
         return figure
 
 
@@ -101,7 +106,10 @@ def _facts(full: pd.DataFrame, constant: pd.DataFrame) -> str:
     for rows in (full, constant):
         seconds = rows["time_s"].iloc[-1] - rows["time_s"].iloc[0]
         facts.append((f"{rows['voltage_v'].min():.0f} V", f"{rows['current_a'].max():.0f} A", format_time(float(seconds))))
-    words = ("lowest voltage", "highest current", "on the line for")
-    return "full coupling: " + "; ".join(
-        f"{word} {own} instead of {other}" for word, own, other in zip(words, *facts, strict=True)
+    (volts, amperes, spell), (other_volts, other_amperes, other_spell) = facts
+    told = (
+        tr("full coupling: lowest voltage {own} instead of {other}", own=volts, other=other_volts),
+        tr("highest current {own} instead of {other}", own=amperes, other=other_amperes),
+        tr("on the line for {own} instead of {other}", own=spell, other=other_spell),
     )
+    return "; ".join(told)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tractionpower.kernels.wayside import GRAVITY
-from tractionpower.movement.curves import TrainCurves
-from tractionpower.reporting.figures.base.style import GREY, INK, PURPLE, STYLE, VERMILION, new_figure
+from tractionpower.movement.curves import TrainCurves, drive_curves
+from tractionpower.reporting.facts.run_data import RunData
+from tractionpower.reporting.figures.base.drawing import wanted
+from tractionpower.reporting.figures.base.style import GREY, INK, PAGE, PURPLE, STYLE, VERMILION, new_figure
+from tractionpower.reporting.texts import number, tr
+
+CURVES = "curves"
+"""Beginning of the names of the figures of curves in a run."""
+
+MOST_KINDS = 8
+"""Kinds of trains of a run that get a figure."""
 
 ROOM = 1.12
 """Height of the axes over the greatest value."""
@@ -89,53 +99,73 @@ def starting_gradient(nominal: TrainCurves) -> float:
     return 1000.0 * surplus / (nominal.mass_kg * GRAVITY)
 
 
+def run_curves(data: RunData) -> Iterator[tuple[str, Figure]]:
+    """Yield the curves of the kinds of trains of a run that have a drive, those of most trains first, with their names."""
+    scenario = data.scenario
+    system, limits = scenario.supply.system, scenario.limits
+    shown = 0
+    for kind, train in data.kinds.items():
+        name = f"{CURVES}_{kind}"
+        if shown == MOST_KINDS or not wanted(name):
+            continue
+        curves = drive_curves(train, scenario.vehicles, limits, system)
+        if has_drive(curves):
+            shown += 1
+            mass, length = number(curves.mass_kg / 1000.0), number(curves.length_m)
+            called = train.name or kind
+            title = tr("{study}: {train}, {mass} t, {length} m", study=data.title, train=called, mass=mass, length=length)
+            yield name, curves_figure(curves, title)
+
+
 def resistance_figure(curves: TrainCurves, title: str) -> Figure:
     """Draw the resistances over speed of a train, or a vehicle, that has no drive."""
     with mpl.rc_context(STYLE):
-        figure = new_figure(9.0, 5.0)
+        figure = new_figure(PAGE, 3.6)
         axes = figure.add_subplot()
         top = ROOM * max(float(resistance.max()) for resistance in curves.resistance_n.values()) / 1000.0
         _draw_resistances(axes, curves, top)
         axes.set_xlim(0.0, 3.6 * float(curves.speed_mps[-1]))
         axes.set_ylim(0.0, top)
-        axes.set(xlabel="speed [km/h]", ylabel="resistance [kN]")
-        axes.legend(loc="upper left", bbox_to_anchor=(1.06, 1.0), fontsize=8, handlelength=3.0)
-        figure.suptitle(f"{title}, no drive", x=0.01, ha="left", fontsize=11)
+        axes.set(xlabel=tr("speed [km/h]"), ylabel=tr("resistance [kN]"))
+        axes.legend(loc="upper left", bbox_to_anchor=(1.09, 1.0), fontsize=7.5, handlelength=3.0)
+        figure.suptitle(tr("{title}, no drive", title=title), x=0.01, ha="left")
         return figure
 
 
 def curves_figure(curves: TrainCurves, title: str) -> Figure:
     """Draw effort over speed at several voltages with resistances, adhesion and electric brake; below it the current."""
     with mpl.rc_context(STYLE):
-        figure = new_figure(9.0, 8.4)
+        figure = new_figure(PAGE, 6.6)
         upper, lower = figure.subplots(2, sharex=True, height_ratios=(3, 2))
         kmh = 3.6 * curves.speed_mps
         # Dark is a low voltage, light a high one, with dashes besides: apart for colour-blind eyes and in print.
         shades = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(curves.curves)))
-        for number, (curve, shade) in enumerate(zip(curves.curves, shades, strict=True)):
-            style: Any = {"color": shade, "linestyle": _dashes(number), "linewidth": 1.5}
-            upper.plot(kmh, curve.effort_n / 1000.0, label=f"effort at {curve.voltage_v:g} V", **style)
-            lower.plot(kmh, curve.current_a, label=f"{curve.voltage_v:g} V", **style)
+        for k, (curve, shade) in enumerate(zip(curves.curves, shades, strict=True)):
+            style: Any = {"color": shade, "linestyle": _dashes(k), "linewidth": 1.5}
+            upper.plot(kmh, curve.effort_n / 1000.0, label=tr("effort at {voltage} V", voltage=number(curve.voltage_v)), **style)
+            lower.plot(kmh, curve.current_a, label=tr("current at {voltage} V", voltage=number(curve.voltage_v)), **style)
         top = ROOM * max(float(np.nanmax(curve.effort_n)) for curve in curves.curves) / 1000.0
         top = max(top, ROOM * float(curves.electric_brake_n.max()) / 1000.0, 1.0)
         _draw_notches(upper, curves)
         _draw_limits(upper, curves, top)
         _draw_resistances(upper, curves, top)
         upper.set_ylim(0.0, top)
-        upper.set_ylabel("effort at the wheel [kN]")
+        upper.set_ylabel(tr("effort at the wheel [kN]"))
         lower.set_ylim(0.0, ROOM * max(1.0, *(float(np.nanmax(curve.current_a)) for curve in curves.curves)))
-        lower.set(ylabel="current at the pantograph [A]\nat the greatest effort, auxiliaries included", xlabel="speed [km/h]")
+        lower.set(
+            ylabel=tr("current at the pantograph [A]\nat the greatest effort,\nauxiliaries included"), xlabel=tr("speed [km/h]")
+        )
         lower.set_xlim(0.0, float(kmh[-1]))
         for axes in (upper, lower):
-            axes.legend(loc="upper left", bbox_to_anchor=(1.06, 1.0), fontsize=8, handlelength=3.0)
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11)
+            axes.legend(loc="upper left", bbox_to_anchor=(1.09, 1.0), fontsize=7.5, handlelength=3.0)
+        figure.suptitle(title, x=0.01, ha="left")
         return figure
 
 
 def _draw_notches(axes: Axes, curves: TrainCurves) -> None:
     """Draw the single notches of series motors behind all else."""
-    for number, notch in enumerate(curves.notches):
-        label = "single notches at nominal voltage" if number == 0 else None
+    for k, notch in enumerate(curves.notches):
+        label = tr("single notches\nat nominal voltage") if k == 0 else None
         kmh, kn = 3.6 * notch.speed_mps, notch.effort_n / 1000.0
         axes.plot(kmh, kn, color=INK, linewidth=0.4, alpha=0.45, zorder=1.0, label=label)
 
@@ -144,10 +174,10 @@ def _draw_limits(axes: Axes, curves: TrainCurves, top: float) -> None:
     kmh = 3.6 * curves.speed_mps
     adhesion = np.where(np.isfinite(curves.adhesion_n), curves.adhesion_n, np.nan) / 1000.0
     if np.nanmin(adhesion, initial=np.inf) < top:
-        axes.plot(kmh, adhesion, color=VERMILION, linestyle=(0, (8, 3)), linewidth=1.1, label="adhesion limit")
+        axes.plot(kmh, adhesion, color=VERMILION, linestyle=(0, (8, 3)), linewidth=1.1, label=tr("adhesion limit"))
     if curves.electric_brake_n.any():
         axes.plot(kmh, curves.electric_brake_n / 1000.0, color=PURPLE, linestyle=(0, (6, 2, 1, 2)), linewidth=1.8,
-                  label="electric brake")  # fmt: skip
+                  label=tr("electric brake"))  # fmt: skip
 
 
 def _draw_resistances(axes: Axes, curves: TrainCurves, top: float) -> None:
@@ -155,7 +185,7 @@ def _draw_resistances(axes: Axes, curves: TrainCurves, top: float) -> None:
     kmh, last_y = 3.6 * curves.speed_mps, -np.inf
     for permille, resistance_n in sorted(curves.resistance_n.items()):
         resistance = resistance_n / 1000.0
-        label = "resistance on level and gradients" if permille == min(curves.resistance_n) else None
+        label = tr("resistance on level\nand gradients") if permille == min(curves.resistance_n) else None
         axes.plot(kmh, resistance, color=GREY, linewidth=0.9, label=label)
         inside = np.flatnonzero(resistance <= top)
         if not inside.size:
@@ -166,9 +196,9 @@ def _draw_resistances(axes: Axes, curves: TrainCurves, top: float) -> None:
         if at_edge:
             y = last_y = max(y, last_y + NAME_ROOM * top)
         axes.annotate(
-            f"{permille:g} ‰" if permille else "level", (float(kmh[last]), y), (3, 0) if at_edge else (-3, 0),
+            f"{number(permille, 2)} ‰" if permille else tr("level"), (float(kmh[last]), y), (3, 0) if at_edge else (-3, 0),
             textcoords="offset points", ha="left" if at_edge else "right", va="center" if at_edge else "top",
-            fontsize=8, color=INK, annotation_clip=False,
+            fontsize=7.5, color=INK, annotation_clip=False,
         )  # fmt: skip
 
 

@@ -14,10 +14,12 @@ from tractionpower.model.line import Line
 from tractionpower.model.scenario import Scenario
 from tractionpower.movement.journey import Journey
 from tractionpower.reporting.facts.places import told
+from tractionpower.reporting.figures.base.route_axis import route_in_words
 from tractionpower.reporting.figures.base.style import png_names, save
 from tractionpower.reporting.figures.trains.journey_figures import journey_figure
 from tractionpower.reporting.figures.trains.train_graph import GraphPanel, GraphPlaces, TrainLine, split_by_line, train_graph
-from tractionpower.studies.journeys import JourneyOutcome, end_of, route_in_words, stations_on
+from tractionpower.reporting.texts import number, tr
+from tractionpower.studies.journeys import JourneyOutcome, end_of, route_end, stations_on
 
 
 def write_journey_figures(outcome: JourneyOutcome, scenario: Scenario, folder: Path, shown: Sequence[str]) -> list[Path]:
@@ -25,7 +27,7 @@ def write_journey_figures(outcome: JourneyOutcome, scenario: Scenario, folder: P
 
     Figures of trains that an earlier run left there go.
     """
-    line, volts = scenario.line, f"theoretical journey at {outcome.voltage_v:g} V"
+    line, volts = scenario.line, tr("theoretical journey at {voltage} V", voltage=number(outcome.voltage_v))
     journeys = outcome.journeys
     title = f"{scenario.name}: {volts}".lstrip(": ")
     graph = train_graph(panels_of(journeys, line, tracks_by_line(line, scenario.supply)), title)
@@ -34,7 +36,12 @@ def write_journey_figures(outcome: JourneyOutcome, scenario: Scenario, folder: P
     for journey in journeys:
         name = journey.run.id
         if name in shown:
-            title = f"train {name}, {route_in_words(journey, line)}: {volts}"
+            title = tr(
+                "train {train}, {route}: {what}",
+                train=name,
+                route=route_in_words(journey.path, route_end(journey), line),
+                what=volts,
+            )
             paths.append(save(journey_figure(journey, stations_on(journey, line), title), folder / f"train-{names[name]}"))
     for stale in set(folder.glob("train-*.png")) - set(paths):
         with suppress(OSError):
@@ -44,11 +51,11 @@ def write_journey_figures(outcome: JourneyOutcome, scenario: Scenario, folder: P
 
 def panels_of(journeys: Sequence[Journey], line: Line, lines: Sequence[Sequence[str]]) -> list[GraphPanel]:
     """Return the panels of the train graph: one for each of `lines`, told by their tracks, that a journey comes to."""
-    numbers = {track: number for number, tracks in enumerate(lines) for track in tracks}
+    numbers = {track: k for k, tracks in enumerate(lines) for track in tracks}
     parts = [part for journey in journeys for part in lines_of(journey, numbers)]
     panels = []
-    for number, tracks in enumerate(lines):
-        shown = [part for at, part in parts if at == number]
+    for k, tracks in enumerate(lines):
+        shown = [part for at, part in parts if at == k]
         if shown:
             places = GraphPlaces(stations_of_all(journeys, line, tracks))
             panels.append(GraphPanel(told(tracks), shown, planned_times(journeys, tracks), places))

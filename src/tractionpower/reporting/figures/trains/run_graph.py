@@ -20,6 +20,7 @@ from tractionpower.reporting.figures.trains.train_graph import (
     split_by_line,
     train_graph,
 )
+from tractionpower.reporting.texts import tr
 
 POINTS = 4000
 """Points of a line that runs over the whole width of a figure."""
@@ -40,11 +41,11 @@ def run_graphs(data: RunData) -> dict[str, Figure]:
     if not parts:
         return {}
     begin, end = float(trains["time_s"].min()), max(float(line.time_s[-1]) for _, line in parts)
-    graphs = {"train_graph": _graph(data, parts, begin, end, "train graph")}
+    graphs = {"train_graph": _graph(data, parts, begin, end, tr("train graph"))}
     if len({line.name for _, line in parts}) > MOST_NAMES and end - begin > FINE_S:
         first, last = busiest(trains["time_s"])
         inside = [(number, part) for number, line in parts if (part := line.between(first, last)) is not None]
-        graphs["train_graph_fine"] = _graph(data, inside, first, last, "train graph of the two hours with most trains")
+        graphs["train_graph_fine"] = _graph(data, inside, first, last, tr("train graph, the two busiest hours"))
     return graphs
 
 

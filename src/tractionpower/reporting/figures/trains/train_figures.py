@@ -29,6 +29,7 @@ from tractionpower.reporting.figures.base.route_axis import (
     course_of,
     devices_along,
     draw_current_limit,
+    draw_gradient,
     draw_height,
     draw_joints,
     draw_permitted_speed,
@@ -43,6 +44,7 @@ from tractionpower.reporting.figures.base.style import (
     GREY,
     INK,
     ORANGE,
+    PAGE,
     PALE,
     PURPLE,
     SKY,
@@ -50,17 +52,24 @@ from tractionpower.reporting.figures.base.style import (
     VERMILION,
     new_figure,
 )
+from tractionpower.reporting.texts import mark, number, tr
 
 Array = NDArray[Any]
 
 MOST = 12
 """So many trains get a figure: half of them by the lowest voltage at the pantograph, then those with the highest current."""
 
-WIDTH, HEIGHT, PANEL = 11.7, 8.3, 5.0
+WIDTH, HEIGHT, PANEL = PAGE, 7.6, 2.4
 """Size of a figure and width of one of its panels [inches]."""
 
 POINTS = 3000
 """Points of a line in a panel."""
+
+PHASE_WORDS = (
+    mark("accelerating"), mark("cruising"), mark("coasting"), mark("braking"), mark("dwelling"), mark("waiting"),
+    mark("holding"), mark("unpowered"),
+)  # fmt: skip
+"""What trains do, in the words of the results, for translators."""
 
 PHASE_COLOURS = dict(zip(PHASES, (VERMILION, SKY, ORANGE, BLUE, GREY, PALE, PURPLE, INK), strict=True))
 
@@ -121,12 +130,15 @@ def train_figure(ride: Ride, data: RunData) -> Figure:
     """Draw a train: on the left over the route, on the right over time; from above speed, height and phase, voltage, current."""
     scenario, path = data.scenario, ride.planned.path
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, HEIGHT, 0.05)
-        grid = figure.subplots(4, 2, sharex="col", sharey="row", height_ratios=(4, 1, 4, 4), width_ratios=(1, 1))
+        figure = new_figure(WIDTH, HEIGHT, 0.03)
+        whole = figure.subplots(5, 2, sharex="col", sharey="row", height_ratios=(4, 1.3, 1.3, 4, 4), width_ratios=(1, 1))
+        whole[1, 1].remove()  # over time a band of phases stands beside the gradient alone
+        draw_height(whole[1, 0], path, course_of(path))
+        grid = whole[[0, 2, 3, 4]]
         over_way, over_time = grid.T
         course = course_of(path)
         draw_permitted_speed(over_way[0], path, ceiling_of(ride.planned), course)
-        draw_height(over_way[1], path, course)
+        draw_gradient(over_way[1], path, course)
         draw_current_limit(over_way[3], path, course)
         _draw_phases(over_time[1], ride)
         for panels, edges in ((over_way, course.at(ride.place_m)), (over_time, ride.time_s)):
@@ -135,8 +147,9 @@ def train_figure(ride: Ride, data: RunData) -> Figure:
         for axes in grid[2]:
             draw_limits(axes, scenario, names=axes is over_time[2])
         _draw_axes(over_way, over_time, ride, data, course)
-        figure.align_ylabels(over_way)
-        figure.suptitle(title_of(ride, data), x=0.01, ha="left", fontsize=11)
+        whole[1, 0].set_ylabel(tr("height\n[m]"), fontsize=7.5)
+        figure.align_ylabels(whole[:, 0])
+        figure.suptitle(title_of(ride, data), x=0.01, ha="left")
         _draw_legend(figure, grid, ride)
         return figure
 
@@ -145,19 +158,21 @@ def title_of(ride: Ride, data: RunData) -> str:
     """Return the title of a train's figure, with its lowest voltage and its highest current below."""
     way = route_in_words(ride.planned.path, ride.planned.route_m, data.scenario.line)
     jumps = bool(course_of(ride.planned.path).joints_m)  # then a kilometre alone would be no place
-    text = f"{data.title}: train {ride.name}, {way}"
+    text = tr("{study}: train {train}, {route}", study=data.title, train=ride.name, route=way)
     facts, dead = [], ride.rows["voltage_v"] < DEAD_V
     for column, pick, words, unit in (
-        ("voltage_v", "idxmin", "lowest voltage", "V"),
-        ("current_a", "idxmax", "highest current", "A"),
+        ("voltage_v", "idxmin", tr("lowest voltage"), "V"),
+        ("current_a", "idxmax", tr("highest current"), "A"),
     ):
         known = ride.rows[column][~dead]
         if known.notna().any():
             row = ride.rows.loc[getattr(known, pick)()]
-            place = f"on track {row['track']} at km" if jumps else "at km"
-            facts.append(f"{words} {row[column]:.0f} {unit} {place} {row['position_km']:.1f}, {format_time(row['time_s'])}")
+            km = number(float(row["position_km"]), 1, bare=False)
+            place = tr("track {track}, km {km}", track=row["track"], km=km) if jumps else tr("km {km}", km=km)
+            facts.append(f"{words} {row[column]:.0f} {unit}, {place}, {format_time(row['time_s'])}")
     if dead.any():
-        facts.append(f"line dead for {float(np.diff(ride.time_s)[dead.to_numpy()].sum()):.0f} s")
+        seconds = float(np.diff(ride.time_s)[dead.to_numpy()].sum())
+        facts.append(tr("line dead for {seconds} s", seconds=number(seconds, 0)))
     return "\n".join([text, "; ".join(facts)])
 
 
@@ -165,17 +180,20 @@ def _draw_rows(panels: Array, rows: pd.DataFrame, edges: Array) -> None:
     """Draw speed, voltage and current over places or times; speed is that where a row begins, the others are means."""
     speed = rows["speed_kmh"].to_numpy()
     kept = peaks_kept(speed, POINTS)
-    panels[0].plot(edges[kept], speed[kept], color=BLUE, linewidth=1.4, label="speed")
+    panels[0].plot(edges[kept], speed[kept], color=BLUE, linewidth=1.1, label=tr("speed"))
     for axes, column, colour, label in (
-        (panels[2], "voltage_v", GREEN, "voltage at the pantograph"),
-        (panels[3], "current_a", VERMILION, "current at the pantograph"),
+        (panels[2], "voltage_v", GREEN, tr("voltage at the pantograph")),
+        (panels[3], "current_a", VERMILION, tr("current at the pantograph")),
     ):
         values = last_twice(rows[column].to_numpy())
         kept = peaks_kept(values, POINTS)
-        axes.plot(edges[kept], values[kept], drawstyle="steps-post", color=colour, linewidth=1.2, label=label)
+        axes.plot(edges[kept], values[kept], drawstyle="steps-post", color=colour, linewidth=0.9, label=label)
     dead = (rows["voltage_v"] < DEAD_V).to_numpy()
     limited = (rows["limited_by"] == "voltage").to_numpy() & ~dead
-    for flags, colour, label in ((limited, ORANGE, "effort limited by the voltage"), (dead, INK, "line dead, no voltage")):
+    for flags, colour, label in (
+        (limited, ORANGE, tr("effort limited by the voltage")),
+        (dead, INK, tr("line dead, no voltage")),
+    ):
         for first, last in spells(flags):
             for axes in panels[2:]:
                 axes.axvspan(edges[first], edges[last], color=colour, alpha=0.25, lw=0, zorder=0.4, label=label)
@@ -215,14 +233,13 @@ def _scale(panels: Array, ride: Ride, limit_mps: Array) -> None:
 def _draw_axes(over_way: Array, over_time: Array, ride: Ride, data: RunData, course: Course) -> None:
     """Label the axes and name stations and devices."""
     path, scenario = ride.planned.path, data.scenario
-    over_way[0].set_ylabel("speed [km/h]")
-    over_way[1].set_ylabel("height\n[m]")
-    over_way[2].set_ylabel("voltage at the\npantograph [V]")
-    over_way[3].set(ylabel="current at the\npantograph [A]", xlabel=course.label)
+    over_way[0].set_ylabel(tr("speed [km/h]"))
+    over_way[2].set_ylabel(tr("voltage at the\npantograph [V]"))
+    over_way[3].set(ylabel=tr("current at the\npantograph [A]"), xlabel=course.label)
     for axes in (over_way[3], over_time[3]):
         axes.axhline(0.0, color=INK, linewidth=0.6)
     course.set_limits(over_way[3])
-    set_clock(over_time[3], float(ride.time_s[0]), float(ride.time_s[-1]), 6)
+    set_clock(over_time[3], float(ride.time_s[0]), float(ride.time_s[-1]), 5)
     over_time[3].set_xlabel(clock_label(over_time[3]))
     stops = [placed.at_m for placed in ride.planned.calls if placed.call.stops]
     name_stations(over_way[:2].tolist(), course, stations_along(path, scenario.line), stops, PANEL)
@@ -240,5 +257,5 @@ def _draw_legend(figure: Figure, grid: Array, ride: Ride) -> None:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             found.setdefault(label.replace("\n", " "), handle)
     for phase in dict.fromkeys(ride.rows["phase"].astype(str)):
-        found.setdefault(phase, Patch(color=PHASE_COLOURS.get(phase, GREY), lw=0))
-    figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=5, fontsize=8, handlelength=1.8)
+        found.setdefault(tr(phase), Patch(color=PHASE_COLOURS.get(phase, GREY), lw=0))
+    figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=3, fontsize=7.5, handlelength=1.6)

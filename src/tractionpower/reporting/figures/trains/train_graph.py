@@ -18,18 +18,28 @@ from numpy.typing import NDArray
 
 from tractionpower.alignment.path import RoutePath
 from tractionpower.reporting.figures.base.axes import clock_label, set_clock
-from tractionpower.reporting.figures.base.labels import LETTER, LINE, fitting
-from tractionpower.reporting.figures.base.style import BLUE, GREEN, GREY, INK, STYLE, VERMILION, new_figure
+from tractionpower.reporting.figures.base.labels import LETTER, LINE, fitting, shortened
+from tractionpower.reporting.figures.base.style import BLUE, GREEN, GREY, INK, PAGE, STYLE, VERMILION, new_figure
 from tractionpower.reporting.figures.delays.delay_layer import Box, DelayLayer, draw_delays
+from tractionpower.reporting.texts import tr
 
 Array = NDArray[Any]
 
-WIDTH, HEIGHT = 10.5, 6.8
-TALL, LOW, BESIDE = 5.5, 1.8, 1.3
-"""Heights of the panel of the longest line and of the lowest one, and of what stands above and below the panels [inches]."""
+WIDTH, HEIGHT = PAGE, 5.6
+TALL, LOW, BESIDE = 4.2, 1.5, 1.3
+"""Size of a graph with one panel; heights of the panels of the longest and the lowest line and of all beside [inches]."""
+
+NAMES = 1.75
+"""Width of what stands left and right of the panels [inches]."""
+
+MOST_STATION_LETTERS = 24
+"""Letters of a station's name beside the graph; of a longer one the beginning stands there."""
 
 BESIDE_LABEL = 0.7
 """Width of what stands beside the words of a legend [inches]."""
+
+ROUND_S = (1.0, 10.0, 60.0, 300.0, 900.0)
+"""A graph begins and ends at multiples of one of these, so that ticks stand at its ends [s]."""
 
 MOST_NAMES = 40
 """With more trains their names are left out."""
@@ -180,22 +190,18 @@ def train_graph(panels: Sequence[GraphPanel], title: str) -> Figure:
         figure = new_figure(WIDTH, sum(inches) + BESIDE)
         grid = list(figure.subplots(len(panels), sharex=True, squeeze=False, height_ratios=inches)[:, 0])
         every = [line for panel in panels for line in panel.lines]
-        set_clock(grid[0], min(float(line.time_s[0]) for line in every), max(float(line.time_s[-1]) for line in every))
+        first, last = min(float(line.time_s[0]) for line in every), max(float(line.time_s[-1]) for line in every)
+        whole = max(step for step in ROUND_S if step <= max((last - first) / 20.0, ROUND_S[0]))
+        set_clock(grid[0], whole * (first // whole), -whole * (-last // whole), 12)
         for axes, panel, tall in zip(grid, panels, inches, strict=True):
             _draw_panel(axes, panel, tall, names=not many, circles=circles)
-            axes.set_ylabel("kilometre of the line [km]" if single else f"{panel.words}\nkilometre [km]")
+            axes.set_ylabel(tr("kilometre of the line [km]") if single else f"{panel.words}\n{tr('kilometre [km]')}")
         grid[-1].set_xlabel(clock_label(grid[-1]))
         found: dict[str, Any] = {}
         for axes in grid:
             found |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
-        if single:
-            grid[0].set_title(title, loc="left")
-            grid[0].legend(
-                found.values(), found.keys(), loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=columns_of(found, 6)
-            )
-        else:
-            figure.suptitle(title, x=0.01, ha="left", fontsize=11)
-            figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=columns_of(found, 4))
+        figure.suptitle(title, x=0.01, ha="left")
+        figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=columns_of(found, 4))
         return figure
 
 
@@ -203,42 +209,46 @@ def columns_of(labels: Collection[str], most: int) -> int:
     """Return in how many columns a legend fits the width of the figure; `most` at most.
 
     >>> columns_of(["short"] * 6, 6), columns_of(["timetable too tight, carried on"] * 6, 6)
-    (6, 3)
+    (5, 2)
     """
     widest = LETTER * max(map(len, labels), default=1) + BESIDE_LABEL
-    return max(1, min(most, int((WIDTH - 1.0) / widest)))
+    return max(1, min(most, int((WIDTH - 0.2) / widest)))
 
 
 def _draw_panel(axes: Axes, panel: GraphPanel, inches: float, *, names: bool, circles: bool) -> None:
     """Draw the trains of a line into axes that are `inches` high."""
     for line in panel.lines:
-        _draw(axes, line, 1.2 if names else 0.6, pale=panel.delays is not None)
+        _draw(axes, line, 1.1 if names else 0.5, pale=panel.delays is not None)
     planned = panel.planned if circles else ()
     if planned:
-        axes.plot(*zip(*planned, strict=True), "o", markerfacecolor="white", markersize=4.5,
+        axes.plot(*zip(*planned, strict=True), "o", markerfacecolor="white", markersize=3.5,
                   markeredgecolor=VERMILION if panel.delays is None else INK,
-                  markeredgewidth=1.0, linestyle="", label="planned (timetable)", zorder=3)  # fmt: skip
+                  markeredgewidth=0.8, linestyle="", label=tr("planned (timetable)"), zorder=3)  # fmt: skip
     axes.margins(y=0.03)
     _name_stations(axes, panel.places.stations, inches)
     _mark_devices(axes, panel.places.devices)
-    written = draw_delays(axes, panel.delays, WIDTH - 2.0, inches) if panel.delays is not None else []
+    written = draw_delays(axes, panel.delays, WIDTH - NAMES, inches) if panel.delays is not None else []
     if names:
         _name_trains(axes, panel.lines, planned, written, inches)
 
 
 def _draw(axes: Axes, line: TrainLine, width: float, *, pale: bool = False) -> None:
     known = line.km[np.isfinite(line.km)]
-    style: Any = {"color": INK, "linestyle": (0, (5, 2)), "label": "computed, falling kilometres"}
+    style: Any = {"color": INK, "linestyle": (0, (5, 2)), "label": tr("computed, falling kilometres")}
     if pale:
-        style = {"color": GREY, "linestyle": "-", "label": "on time"}
+        style = {"color": GREY, "linestyle": "-", "label": tr("on time")}
     elif known[-1] >= known[0]:
-        style = {"color": BLUE, "linestyle": "-", "label": "computed, rising kilometres"}
+        style = {"color": BLUE, "linestyle": "-", "label": tr("computed, rising kilometres")}
     axes.plot(line.time_s, line.km, linewidth=width, **style)
     if not line.arrives:
-        axes.plot(line.time_s[-1], line.km[-1], "X", color=VERMILION, markersize=8, label="not at the end of its route", zorder=4)
+        axes.plot(
+            line.time_s[-1], line.km[-1], "X", color=VERMILION, markersize=8, label=tr("not at the end of its route"), zorder=4
+        )
     for over, end in ((line.comes_over, 0), (line.goes_over, -1)):
         if over:
-            axes.plot(line.time_s[end], line.km[end], "D", color=INK, markersize=4, linestyle="", label="from or to another line")
+            axes.plot(
+                line.time_s[end], line.km[end], "D", color=INK, markersize=4, linestyle="", label=tr("from or to another line")
+            )
 
 
 def _name_stations(axes: Axes, stations: Sequence[tuple[float, str, bool]], inches: float) -> None:
@@ -249,14 +259,14 @@ def _name_stations(axes: Axes, stations: Sequence[tuple[float, str, bool]], inch
     for k in shown:
         axes.axhline(stations[k][0], color=GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
     right = axes.secondary_yaxis("right")
-    right.set_yticks([stations[k][0] for k in shown], [stations[k][1] for k in shown])
-    right.tick_params(length=3, labelsize=8, colors=INK)
+    right.set_yticks([stations[k][0] for k in shown], [shortened(stations[k][1], MOST_STATION_LETTERS) for k in shown])
+    right.tick_params(length=3, labelsize=7.5, colors=INK)
     right.spines["right"].set_visible(False)
 
 
 def _mark_devices(axes: Axes, devices: Sequence[tuple[float, str, bool]]) -> None:
     """Mark substations and section cabins on the left."""
-    for substation, sign, size, label in ((True, ">", 7, "substation"), (False, "s", 4, "section cabin")):
+    for substation, sign, size, label in ((True, ">", 6, tr("substation")), (False, "s", 3.5, tr("section cabin"))):
         km = [place for place, _, kind in devices if kind == substation]
         if km:
             axes.plot([0.0] * len(km), km, sign, color=GREEN, markersize=size, clip_on=False, zorder=4, label=label,
@@ -269,7 +279,7 @@ def _name_trains(
     """Write each train's name on its longest line where it moves and nothing else stands, if there is room."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     tall = LINE * (high - low) / inches
-    second = (right - left) / (WIDTH - 2.0)  # time in an inch of paper
+    second = (right - left) / (WIDTH - NAMES)  # time in an inch of paper
     taken = [*((x, y, 0.1 * second) for x, y in planned), *written]
     lasts = {line.name: max(np.ptp(each.time_s) for each in lines if each.name == line.name) for line in lines}
     for number, line in enumerate(lines):
@@ -288,7 +298,7 @@ def _name_trains(
         for k in (alone or free)[:1]:
             taken.append((float(time_s[k]), float(km[k]), wide))
             box = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85}
-            axes.text(time_s[k], km[k], line.name, fontsize=8, color=INK, ha="center", va="center", bbox=box)
+            axes.text(time_s[k], km[k], line.name, fontsize=7.5, color=INK, ha="center", va="center", bbox=box)
 
 
 def _passes(line: TrainLine, x: float, y: float, wide: float, tall: float) -> bool:
