@@ -15,32 +15,39 @@ from tractionpower.io.wording import counted
 from tractionpower.model.limits import Limit, find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.places import LinePlaces
+from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.results.results import Results
 from tractionpower.studies.cases.judgement import Check, checks_of
 
 KIND_WORDS = {
-    "base": "nothing is out",
-    "unit": "rectifier unit",
-    "substation": "substation",
-    "feeder": "feeder",
-    "section_cabin": "section cabin",
-    "contact_line": "contact line",
-    "pair": "pair",
-    "variant": "variant",
+    "base": mark("nothing is out"),
+    "unit": mark("rectifier unit"),
+    "substation": mark("substation"),
+    "feeder": mark("feeder"),
+    "section_cabin": mark("section cabin"),
+    "contact_line": mark("contact line"),
+    "pair": mark("pair"),
+    "variant": mark("variant"),
 }
 """Kinds of cases in words, in the order of the sheets."""
 
 KINDS_WORDS = {
-    "base": "Nothing is out",
-    "unit": "Rectifier units",
-    "substation": "Substations",
-    "feeder": "Feeders",
-    "section_cabin": "Section cabins",
-    "contact_line": "Contact-line sections",
-    "pair": "Pairs of outages",
-    "variant": "Variants",
+    "base": mark("Nothing is out"),
+    "unit": mark("Rectifier units"),
+    "substation": mark("Substations"),
+    "feeder": mark("Feeders"),
+    "section_cabin": mark("Section cabins"),
+    "contact_line": mark("Contact-line sections"),
+    "pair": mark("Pairs of outages"),
+    "variant": mark("Variants"),
 }
 GRIDS = ("normal", "low", "high")
+GRID_WORDS = {
+    "normal": mark("normal grid voltage"),
+    "low": mark("low grid voltage"),
+    "high": mark("high grid voltage"),
+}
+"""Grid voltages in words."""
 COMPUTED = ("complete", "flagged")
 NOT_COMPUTED = "not computed"
 
@@ -137,10 +144,10 @@ class Outages:
     def words(row: Mapping[Any, Any]) -> str:
         """Return in words what is out in a case."""
         if row["kind"] == "base":
-            return KIND_WORDS["base"]
+            return tr(KIND_WORDS["base"])
         if row["kind"] == "pair":
             parts = zip(row["subject"].split(" + "), row["mode"].split(" + "), strict=False)
-            return " and ".join(_out("", subject, mode) for subject, mode in parts) or str(row["case"])
+            return tr(" and ").join(_out("", subject, mode) for subject, mode in parts) or str(row["case"])
         return _out(row["kind"], row["subject"] or row["case"], row["mode"])
 
     def place(self, subject: str) -> float:
@@ -172,7 +179,7 @@ class Outages:
         row = self.by_id.get(str(case))
         if row is None:
             return str(case)
-        return row["words"] if row["grid"] in ("normal", "") else f"{row['words']}, {row['grid']} grid voltage"
+        return row["words"] if row["grid"] in ("normal", "") else f"{row['words']}, {grid_told(row['grid'])}"
 
     def groups(self) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Any]]]]:
         """Yield each outage once, the base first: what is out, and its cases by grid voltage."""
@@ -235,6 +242,15 @@ class Outages:
         return self.scenario.feasibility.tolerance_s
 
 
+def grid_told(grid: str) -> str:
+    """Return a grid voltage in words.
+
+    >>> grid_told("low")
+    'low grid voltage'
+    """
+    return tr(GRID_WORDS[grid]) if grid in GRID_WORDS else tr("grid voltage {name}", name=grid)
+
+
 def _missed(check: Check, case: Mapping[str, Any]) -> str:
     """Return in words how a limit is missed."""
     value, unit = case[check.figure], f" {check.unit}" if check.unit else ""
@@ -253,12 +269,13 @@ def _out(kind: str, subject: str, mode: str) -> str:
     ('Psary, 1 of 2 units', 'contact line track 1 km 0-9')
     """
     if subject.endswith(" unit"):
-        left = _UNITS.sub(r"\1 units", mode) if _UNITS.search(mode) else "only unit out"
+        counted_units = _UNITS.search(mode)
+        left = tr("only unit out") if counted_units is None else tr("{units} units", units=recorded(counted_units[1]))
         return f"{subject.removesuffix(' unit')}, {left}"
     words = KIND_WORDS.get(kind, kind) if kind not in ("", "variant") else ""
     told = not words or subject.casefold().startswith(tuple(words.split()))
-    named = subject if told else f"{words} {subject}"
-    state = mode.replace("_", " ")
+    named = recorded(subject) if told else f"{tr(words)} {recorded(subject)}"
+    state = recorded(mode.replace("_", " "))
     return f"{named}, {state}" if state and state != "dead" else named
 
 

@@ -9,22 +9,23 @@ import pandas as pd
 
 from tractionpower.model.quantity import Quantity
 from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.texts import mark
 from tractionpower.results.results import Results
 from tractionpower.studies.sweep.cases import number_of, short_names
 
 WORDS = {
-    "lowest_voltage_v": "lowest voltage [V]",
-    "useful_zone_v": "lowest mean useful voltage\nof a zone [V]",
-    "utilisation_percent": "highest utilisation\nof a device [%]",
-    "worst_late_s": "greatest lateness\nat a call [s]",
-    "line_loss_kwh": "loss in lines, rails\nand feeders [kWh]",
-    "highest_demand_kw": "highest quarter-hour\ndemand [kW]",
-    "rail_potential_v": "greatest rail\npotential [V]",
-    "energy_kwh": "energy of the\nsubstations [kWh]",
-    "useful_train_v": "lowest mean useful voltage\nof a train [V]",
-    "late_trains": "late trains",
-    "overloaded": "overloaded devices",
-    "trips": "trips of breakers",
+    "lowest_voltage_v": mark("lowest voltage [V]"),
+    "useful_zone_v": mark("lowest mean useful voltage\nof a zone [V]"),
+    "utilisation_percent": mark("highest utilisation\nof a device [%]"),
+    "worst_late_s": mark("greatest lateness\nat a call [s]"),
+    "line_loss_kwh": mark("loss in lines, rails\nand feeders [kWh]"),
+    "highest_demand_kw": mark("highest quarter-hour\ndemand [kW]"),
+    "rail_potential_v": mark("greatest rail\npotential [V]"),
+    "energy_kwh": mark("energy of the\nsubstations [kWh]"),
+    "useful_train_v": mark("lowest mean useful voltage\nof a train [V]"),
+    "late_trains": mark("late trains"),
+    "overloaded": mark("overloaded devices"),
+    "trips": mark("trips of breakers"),
 }
 """Figures that are drawn, the most telling first, as they are written."""
 

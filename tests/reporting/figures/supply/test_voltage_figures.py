@@ -31,7 +31,7 @@ def test_each_track_has_fixed_places_and_pantographs(data):
         assert np.nanmax(highest.get_ydata()) == pytest.approx(rows["highest_voltage_v"].max())
         fixed = line_named(axes, "fixed cross-sections, mean")
         assert fixed.get_xdata().tolist() == [0.0, 10.0, 20.0]
-    assert panels[-1].get_xlabel() == "kilometre of the line [km]"
+    assert panels[-1].child_axes[0].get_xlabel() == "kilometre of the line [km]"
 
 
 def test_the_lowest_voltage_is_marked_on_its_track_with_train_and_time(data):

@@ -13,23 +13,31 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.facts.places import LinePlaces
-from tractionpower.reporting.figures.base.axes import draw_limits, mark_devices, panels_of_lines, voltage_range, with_margin
-from tractionpower.reporting.figures.base.style import COLOURS, DASHES, STYLE, new_figure, save_all
+from tractionpower.reporting.facts.places import LinePlaces, told
+from tractionpower.reporting.figures.base.axes import draw_limits, panels_of_lines, voltage_range, with_margin
+from tractionpower.reporting.figures.base.style import COLOURS, DASHES, PAGE, SMALLEST, STYLE, new_figure, save_all
+from tractionpower.reporting.figures.supply.km_axis import name_devices, name_stations
+from tractionpower.reporting.figures.supply.panels import LETTER_7, head, legend_below, shortened
+from tractionpower.reporting.texts import mark, tr
 from tractionpower.results.results import Results
 
-WIDTH = 10.5
+INCHES = PAGE - 1.15
+"""Width of a panel [inches]."""
+
 MOST_TRACKS = 8
 """With more tracks, those with the lowest voltages are shown."""
+
+MOST_LETTERS = 20
+"""Letters of a name below an axis."""
 
 GAP_KM = 0.75
 """Bins of pantographs further apart than this are not joined by a line [km]."""
 
 LOADS = (
-    ("highest_clock_15_min_power_kw", "highest quarter of an hour\nby the clock [kW]"),
-    ("highest_power_kw", "highest power of a step [kW]"),
-    ("rms_current_a", "RMS current\nover the run [A]"),
-    ("highest_current_a", "highest current\nof a step [A]"),
+    ("highest_clock_15_min_power_kw", mark("highest quarter of an hour\nby the clock [kW]")),
+    ("highest_power_kw", mark("highest power\nof a step [kW]")),
+    ("rms_current_a", mark("RMS current\nover the run [A]")),
+    ("highest_current_a", mark("highest current\nof a step [A]")),
 )
 """Figures of substations that are drawn, as far as the folders have them; the second only without the first."""
 
@@ -72,26 +80,27 @@ def voltage_along_line(results: Results, scenario: Scenario, folders: Sequence[s
     tracks = [track for line in lines for track in line]
     profile = profile[profile["track"].isin(tracks)]
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 1.5 + 0.5 * len(lines) + 2.5 * len(tracks))
+        figure = new_figure(PAGE, 1.5 + 0.9 * len(lines) + 2.0 * len(tracks))
         for axes, track in zip(panels_of_lines(figure, lines), tracks, strict=True):
             line = next(line for line in lines if track in line)
             own = profile[profile["track"] == track]
-            for number, folder in enumerate(folders):
-                _draw_lowest(axes, own[own["folder"] == folder], folder, number)
-            axes.set_ylabel(f"track {track}\nlowest voltage [V]")
+            for row, folder in enumerate(folders):
+                _draw_lowest(axes, own[own["folder"] == folder], folder, row)
+            axes.tick_params(labelsize=8)
+            axes.set_ylabel(tr("{tracks}\nlowest voltage [V]", tracks=told([track])), fontsize=8)
             axes.set_ylim(*voltage_range(float(profile["lowest_voltage_v"].min()), float(profile["lowest_voltage_v"].max())))
             axes.set_xlim(*with_margin(*places.span(profile, line)))
             draw_limits(axes, scenario)
-            mark_devices(axes, places.devices([track]), WIDTH - 1.0, names=track == line[0])
+            name_devices(axes, places.devices([track]), INCHES, names=track == line[0])
             if track == line[-1]:
-                axes.set_xlabel("kilometre of the line [km]")
-        figure.suptitle(f"{title}: lowest voltage along the line", x=0.01, ha="left", fontsize=11)
+                name_stations(axes, places.stations(line), INCHES)
+        head(figure, tr("{study}: lowest voltage along the line", study=title))
         handles, labels = figure.axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8)
+        legend_below(figure, handles, labels)
         return figure
 
 
-def _draw_lowest(axes: Axes, rows: pd.DataFrame, folder: str, number: int) -> None:
+def _draw_lowest(axes: Axes, rows: pd.DataFrame, folder: str, row: int) -> None:
     """Draw one folder: what trains had where trains ran, else what fixed places had."""
     if (rows["where"] == "pantograph").any():
         rows = rows[rows["where"] == "pantograph"]
@@ -102,8 +111,8 @@ def _draw_lowest(axes: Axes, rows: pd.DataFrame, folder: str, number: int) -> No
     km, volts = rows["km"].to_numpy(float), rows["lowest_voltage_v"].to_numpy(float)
     breaks = np.flatnonzero(np.diff(km) > gap) + 1
     axes.plot(
-        np.insert(km, breaks, np.nan), np.insert(volts, breaks, np.nan), color=COLOURS[number % len(COLOURS)],
-        linestyle=DASHES[number % len(DASHES)], linewidth=1.5 if number else 1.9, label=folder,
+        np.insert(km, breaks, np.nan), np.insert(volts, breaks, np.nan), color=COLOURS[row % len(COLOURS)],
+        linestyle=DASHES[row % len(DASHES)], linewidth=1.3 if row else 1.7, label=folder,
     )  # fmt: skip
 
 
@@ -119,25 +128,27 @@ def substation_loads(results: Results, scenario: Scenario, folders: Sequence[str
     wide = {name: _wide(rows[rows["figure"] == name], folders) for name in names}
     stations = _along_line(wide[names[0]], scenario, MOST_BARS // max(len(folders), 1))
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 1.6 + 2.1 * len(names))
+        figure = new_figure(PAGE, 1.9 + 1.6 * len(names))
         panels = list(np.atleast_1d(figure.subplots(len(names), 1, sharex=True)))
         width = 0.8 / len(folders)
         for axes, name in zip(panels, names, strict=True):
             loads = wide[name].reindex(stations)
-            for number, folder in enumerate(folders):
-                at = np.arange(len(stations)) + (number - (len(folders) - 1) / 2) * width
-                axes.bar(at, loads[folder].fillna(0.0), 0.92 * width, color=COLOURS[number % len(COLOURS)], label=folder)
-            axes.set_ylabel(dict(LOADS)[name])
+            for row, folder in enumerate(folders):
+                at = np.arange(len(stations)) + (row - (len(folders) - 1) / 2) * width
+                axes.bar(at, loads[folder].fillna(0.0), 0.92 * width, color=COLOURS[row % len(COLOURS)], label=folder)
+            axes.tick_params(labelsize=8)
+            axes.set_ylabel(tr(dict(LOADS)[name]), fontsize=8)
             axes.grid(visible=False, axis="x")
             axes.set_axisbelow(True)
-        crowded = sum(len(station) + 2 for station in stations) > 120
-        turned: Any = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"} if crowded else {}
-        panels[-1].set_xticks(np.arange(len(stations)), stations, **turned)
+        names_shown = [shortened(station, MOST_LETTERS) for station in stations]
+        crowded = LETTER_7 * sum(len(name) + 2 for name in names_shown) > INCHES
+        turned: Any = {"rotation": 45, "ha": "right", "rotation_mode": "anchor"} if crowded else {}
+        panels[-1].set_xticks(np.arange(len(stations)), names_shown, fontsize=SMALLEST, **turned)
         left = len(wide[names[0]]) - len(stations)
-        more = f"; {left} with smaller loads are not drawn" if left else ""
-        figure.suptitle(f"{title}: loads of the substations{more}", x=0.01, ha="left", fontsize=11)
+        more = tr("; {count} with smaller loads are not drawn", count=left) if left else ""
+        head(figure, tr("{study}: loads of the substations", study=title) + more)
         handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
+        legend_below(figure, handles, labels)
         return figure
 
 

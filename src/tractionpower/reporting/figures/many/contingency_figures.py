@@ -13,22 +13,39 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from tractionpower.io.wording import counted
 from tractionpower.model.limits import common_limits
-from tractionpower.reporting.facts.outages import COMPUTED, Outages
-from tractionpower.reporting.figures.base.axes import draw_limits, mark_devices, panels_of_lines, voltage_range, with_margin
-from tractionpower.reporting.figures.base.labels import LETTER, row_name
-from tractionpower.reporting.figures.base.style import BLUE, GREEN, GREY, INK, ORANGE, PALE, SKY, STYLE, VERMILION, new_figure
+from tractionpower.reporting.facts.device_words import window_told
+from tractionpower.reporting.facts.outages import COMPUTED, Outages, grid_told
+from tractionpower.reporting.facts.places import told
+from tractionpower.reporting.figures.base.axes import draw_limits, panels_of_lines, voltage_range, with_margin
+from tractionpower.reporting.figures.base.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    PAGE,
+    PALE,
+    SKY,
+    SMALLEST,
+    STYLE,
+    VERMILION,
+    new_figure,
+)
+from tractionpower.reporting.figures.supply.km_axis import name_devices, name_stations
+from tractionpower.reporting.figures.supply.panels import LETTER_7, head, in_lines, legend_below, shortened
 from tractionpower.reporting.figures.supply.ratings_figures import BARE, TIGHT_PERCENT, margin_colour
-from tractionpower.studies.ratings.words import window_words
+from tractionpower.reporting.texts import number, recorded, tr, trn
 
-WIDTH = 11.7
-PORTRAIT = 8.3
-"""Width of figures that stand upright on A4 [inches]."""
+INCHES = PAGE - 1.1
+"""Width of a panel [inches]."""
 
 MOST_TRACKS = 6
-MOST_ROWS = 56
-ROW = 0.165
+MOST_ROWS = 50
+MOST_LETTERS = 48
+"""Letters of a name beside a row."""
+
+ROW = 0.15
 """Height of a row of dots [inches]."""
 
 GAP_KM = 1.5
@@ -37,17 +54,20 @@ GAP_KM = 1.5
 NEAR = 0.6
 """A limit of the rail potential is drawn when it comes to this share of it."""
 
+LEGEND_LETTERS = 100
+"""Letters of what is said of a case below a figure."""
+
 GRID_STYLES: dict[str, tuple[str, str]] = {"normal": (BLUE, "o"), "low": (VERMILION, "v"), "high": (GREEN, "^")}
 
 
 def envelope_voltage(outages: Outages, title: str) -> Figure | None:
     """Draw the lowest voltage along each track without outage and of all cases, and which case rules where."""
-    return _envelope(outages, "voltage", f"{title}: lowest voltage along the line in all outages")
+    return _envelope(outages, "voltage", tr("{study}: lowest voltage along the line in all outages", study=title))
 
 
 def envelope_rails(outages: Outages, title: str) -> Figure | None:
     """Draw the greatest rail potential along the line without outage and of all cases, and which case rules where."""
-    return _envelope(outages, "rail_potential", f"{title}: greatest rail potential in all outages")
+    return _envelope(outages, "rail_potential", tr("{study}: greatest rail potential in all outages", study=title))
 
 
 def _envelope(outages: Outages, quantity: str, title: str) -> Figure | None:
@@ -60,31 +80,32 @@ def _envelope(outages: Outages, quantity: str, title: str) -> Figure | None:
     lines = outages.places.by_line(str(track) for track in order)
     tracks = [track for line in lines for track in line]
     numbers = _ruling_numbers(rows[rows["track"].isin(tracks)])
-    legend = [f"{number}  {outages.told(case)}" for case, number in numbers.items()]
+    legend = [f"{count}  {shortened(outages.told(case), LEGEND_LETTERS)}" for case, count in numbers.items()]
     columns, texts = _in_columns(legend)
     with mpl.rc_context(STYLE):
-        height = 0.9 + 2.9 * len(tracks)
-        figure = new_figure(WIDTH, height + 0.35 + 0.15 * texts)
-        parts: Any = figure.subfigures(2, 1, height_ratios=[height, 0.35 + 0.15 * texts])
+        height = 1.5 + 0.9 * len(lines) + 1.9 * len(tracks)
+        words = 0.25 + 0.13 * texts
+        figure = new_figure(PAGE, height + words)
+        parts: Any = figure.subfigures(2, 1, height_ratios=[height, words])
         above, below = parts
         panels = panels_of_lines(above, lines)
         for axes, track in zip(panels, tracks, strict=True):
             line = next(line for line in lines if track in line)
+            axes.tick_params(labelsize=8, labelbottom=track == line[-1])
             _draw_envelope(axes, outages, rows, track, line, numbers, quantity)
-            axes.tick_params(labelbottom=track == line[-1])
         for line in lines:
-            panels[tracks.index(line[-1])].set_xlabel("kilometre of the line [km]")
-        handles, labels = panels[0].get_legend_handles_labels()
-        above.legend(handles, labels, loc="outside upper right", ncols=3, fontsize=8)
+            own = {*line, *(track for conductor in line for track in conductor.split())}
+            name_stations(panels[tracks.index(line[-1])], outages.places.stations(own), INCHES)
+        legend_below(above, *panels[0].get_legend_handles_labels(), 3)
         _write_legend(below, legend, columns, texts)
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11)
+        head(figure, title)
         return figure
 
 
 def _ruling_numbers(rows: pd.DataFrame) -> dict[str, int]:
     """Return a number for each case that rules somewhere, in the order along the line."""
     ordered = rows[rows["worst_v"].notna()].sort_values(["km", "track"], kind="stable")
-    return {case: number for number, case in enumerate(dict.fromkeys(ordered["case"].astype(str)), 1)}
+    return {case: count for count, case in enumerate(dict.fromkeys(ordered["case"].astype(str)), 1)}
 
 
 def _draw_envelope(
@@ -95,8 +116,8 @@ def _draw_envelope(
     gaps = np.flatnonzero(np.diff(km) > GAP_KM) + 1
     at = np.insert(km, gaps, np.nan)
     for name, colour, label in (
-        ("base_v", BLUE, "nothing out, normal grid voltage"),
-        ("worst_v", VERMILION, "worst of all cases"),
+        ("base_v", BLUE, tr("nothing out, normal grid voltage")),
+        ("worst_v", VERMILION, tr("worst of all cases")),
     ):
         values = own[name].to_numpy(float)
         axes.plot(at, np.insert(values, gaps, np.nan), color=colour, linewidth=1.4, label=label)
@@ -109,13 +130,12 @@ def _draw_envelope(
         limit = outages.limit("u_min2")
         axes.set_ylim(*voltage_range(min(bottom, limit.value if limit and bottom - limit.value < 600.0 else bottom), top, 0.12))
         draw_limits(axes, outages.scenario)
-        axes.set_ylabel(f"track {track}\nlowest voltage [V]")
+        axes.set_ylabel(tr("{tracks}\nlowest voltage [V]", tracks=told([track])), fontsize=8)
     else:
         _rail_axis(axes, outages, top)
-        axes.set_ylabel(f"rails of track{'s' if ' ' in track else ''} {track}\nrail potential [V]")
-    inches = WIDTH - 1.2
-    mark_devices(axes, outages.places.devices(tracks), inches, names=track == line[0])
-    _draw_rulers(axes, km, own["case"].astype(str).to_list(), numbers, inches)
+        axes.set_ylabel(tr("rails of {tracks}\nrail potential [V]", tracks=told(track.split())), fontsize=8)
+    name_devices(axes, outages.places.devices(tracks), INCHES, names=track == line[0])
+    _draw_rulers(axes, km, own["case"].astype(str).to_list(), numbers, INCHES)
 
 
 def _rail_axis(axes: Axes, outages: Outages, top: float) -> None:
@@ -125,7 +145,7 @@ def _rail_axis(axes: Axes, outages: Outages, top: float) -> None:
     near = limit is not None and top >= NEAR * limit.value
     axes.set_ylim(0.0, 1.15 * max(top, 1.0, limit.value if limit is not None and near else 0.0))
     if limit is not None and near:
-        label = f"touch voltage, permanent ({limit.status} value)"
+        label = tr("touch voltage, {duration} ({status} value)", duration=tr("permanent"), status=recorded(limit.status))
         axes.axhline(limit.value, color=GREY, linewidth=1.0, linestyle=(0, (5, 3)), label=label)
 
 
@@ -136,29 +156,35 @@ def _draw_rulers(axes: Axes, km: Any, cases: list[str], numbers: Mapping[str, in
     for begin, end in itertools.pairwise(starts):
         left = km[begin] - 0.25 if begin == 0 or km[begin] - km[begin - 1] > GAP_KM else (km[begin - 1] + km[begin]) / 2
         right = km[end - 1] + 0.25 if end == len(km) or km[end] - km[end - 1] > GAP_KM else (km[end - 1] + km[end]) / 2
-        number = numbers[cases[begin]]
-        colour = (SKY, PALE, ORANGE, "#bbd9a5")[number % 4]
-        axes.axvspan(left, right, 0.0, 0.075, facecolor=colour, edgecolor="white", linewidth=0.8, zorder=0.8)
-        if (right - left) / (high - low) * inches > LETTER * (len(str(number)) + 0.4):
-            at = ((left + right) / 2, 0.036)
-            style: Any = {"xycoords": ("data", "axes fraction"), "ha": "center", "va": "center", "fontsize": 7, "color": INK}
-            axes.annotate(str(number), at, **style)
+        count = numbers[cases[begin]]
+        colour = (SKY, PALE, ORANGE, "#bbd9a5")[count % 4]
+        axes.axvspan(left, right, 0.0, 0.095, facecolor=colour, edgecolor="white", linewidth=0.8, zorder=0.8)
+        if (right - left) / (high - low) * inches > LETTER_7 * (len(str(count)) + 0.2):
+            at = ((left + right) / 2, 0.045)
+            style: Any = {
+                "xycoords": ("data", "axes fraction"),
+                "ha": "center",
+                "va": "center",
+                "fontsize": SMALLEST,
+                "color": INK,
+            }
+            axes.annotate(str(count), at, **style)
 
 
 def _in_columns(texts: Sequence[str]) -> tuple[int, int]:
     """Return into how many columns texts fit, and how many lines they need there."""
     longest = max(map(len, texts), default=1)
-    columns = max(1, min(4, int((WIDTH - 0.4) / (LETTER * (longest + 3)))))
+    columns = max(1, min(3, int(PAGE / (LETTER_7 * (longest + 1)))))
     return columns, -(-len(texts) // columns)
 
 
 def _write_legend(figure: Any, texts: Sequence[str], columns: int, lines: int) -> None:
     """Write what the numbers of the strip mean."""
-    inches = 0.35 + 0.15 * lines
-    figure.text(0.012, 1.0 - 0.02 / inches, "Coloured strip: the case that rules there", va="top", fontsize=8, color=INK)
-    for number, text in enumerate(texts):
-        x = 0.012 + (number // lines) / columns
-        figure.text(x, 1.0 - (0.2 + 0.15 * (number % lines)) / inches, text, va="top", fontsize=7.5, color=INK)
+    inches = 0.25 + 0.13 * lines
+    style: Any = {"va": "top", "fontsize": SMALLEST, "color": INK}
+    figure.text(0.012, 1.0 - 0.02 / inches, tr("Coloured strip: the case that rules there"), fontweight="bold", **style)
+    for row, text in enumerate(texts):
+        figure.text(0.012 + (row // lines) / columns, 1.0 - (0.17 + 0.13 * (row % lines)) / inches, text, **style)
 
 
 def outage_voltages(outages: Outages, title: str) -> Figure | None:
@@ -167,12 +193,12 @@ def outage_voltages(outages: Outages, title: str) -> Figure | None:
     if not rows:
         return None
     with mpl.rc_context(STYLE):
-        figure = new_figure(PORTRAIT, 1.5 + ROW * len(rows))
+        figure = new_figure(PAGE, 1.3 + ROW * len(rows))
         axes = figure.add_subplot()
         for grid in outages.grids:
             colour, marker = GRID_STYLES.get(grid, (GREY, "s"))
             points = [(_value(cases.get(grid), "lowest_voltage_v"), k) for k, (_, cases) in enumerate(rows)]
-            style: Any = {"color": colour, "markersize": 4.5, "label": f"{grid} grid voltage"}
+            style: Any = {"color": colour, "markersize": 4.5, "label": grid_told(grid)}
             axes.plot(*zip(*points, strict=True), marker, **style)
         volts = [_value(case, "lowest_voltage_v") for _, cases in rows for case in cases.values()]
         limit = outages.limit("u_min2")
@@ -182,10 +208,11 @@ def outage_voltages(outages: Outages, title: str) -> Figure | None:
         axes.set_xlim(*voltage_range(low, float(np.nanmax(volts)), 0.08))
         _upright_limits(axes, outages)
         _name_rows(axes, [first["words"] for first, _ in rows])
-        axes.set_xlabel("lowest voltage of the run [V]")
-        figure.legend(loc="outside lower center", ncols=3, fontsize=8)
-        more = f", the {len(rows)} worst of {every}" if len(rows) < every else ""
-        figure.suptitle(f"{title}: lowest voltage in each outage{more}", x=0.01, ha="left", fontsize=11)
+        axes.tick_params(axis="x", labelsize=8)
+        axes.set_xlabel(tr("lowest voltage of the run [V]"), fontsize=8)
+        legend_below(figure, *axes.get_legend_handles_labels())
+        more = tr(", the {shown} worst of {every}", shown=len(rows), every=every) if len(rows) < every else ""
+        head(figure, tr("{study}: lowest voltage in each outage", study=title) + more)
         return figure
 
 
@@ -195,9 +222,9 @@ def _upright_limits(axes: Axes, outages: Outages) -> None:
         limit = outages.limit(name)
         if limit is not None and low <= limit.value <= high:
             axes.axvline(limit.value, color=INK, linewidth=0.9, linestyle=(0, (5, 3)))
-            text = f"{shown} {limit.value:g} V"
+            text = f"{shown} {number(limit.value)} V"
             axes.annotate(text, (limit.value, 1.0), (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points",
-                          ha="center", va="bottom", fontsize=7.5, color=INK)  # fmt: skip
+                          ha="center", va="bottom", fontsize=SMALLEST, color=INK)  # fmt: skip
 
 
 def _worst_outages(outages: Outages, name: str, *, lowest: bool = False) -> tuple[list[Any], int]:
@@ -215,7 +242,7 @@ def _value(case: Mapping[str, Any] | None, name: str) -> float:
 
 
 def _name_rows(axes: Axes, names: Sequence[str]) -> None:
-    axes.set_yticks(range(len(names)), [row_name(name) for name in names], fontsize=7)
+    axes.set_yticks(range(len(names)), [shortened(name, MOST_LETTERS) for name in names], fontsize=SMALLEST)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
 
@@ -231,9 +258,9 @@ def outage_delays(outages: Outages, title: str) -> Figure | None:
     worst = trains.groupby(trains["case"].astype(str))["added_late_s"].max().sort_values(ascending=False, kind="stable")
     kept = set(worst.head(MOST_ROWS).index)
     cases = [str(case) for case in outages.cases["case"] if case in kept]
-    size, unit = (60.0, "min") if worst.iloc[0] > 600.0 else (1.0, "s")
+    size, unit = (60.0, tr("min")) if worst.iloc[0] > 600.0 else (1.0, tr("s"))
     with mpl.rc_context(STYLE):
-        figure = new_figure(PORTRAIT, 1.4 + ROW * max(len(cases), 4))
+        figure = new_figure(PAGE, 1.4 + ROW * max(len(cases), 4))
         axes = figure.add_subplot()
         for k, case in enumerate(cases):
             own = trains[trains["case"] == case]
@@ -241,16 +268,17 @@ def outage_delays(outages: Outages, title: str) -> Figure | None:
             colour, _ = GRID_STYLES.get(outages.by_id[case]["grid"], (GREY, "s"))
             axes.plot(added, np.full(len(added), float(k)), "o", color=colour, alpha=0.45, markersize=4.5, markeredgewidth=0)
             most = own["train"].iloc[int(added.argmax())]
-            least = ", at least" if own["status"].iloc[int(added.argmax())] == "stuck" else ""
-            text = f"{most}{least}; {counted(len(own), 'train')}"
-            axes.annotate(text, (added.max(), k), (6, 0), textcoords="offset points", va="center", fontsize=6.5, color=INK)
-        axes.set_xlim(0.0, 1.35 * worst.iloc[0] / size)
+            least = tr(", at least") if own["status"].iloc[int(added.argmax())] == "stuck" else ""
+            text = f"{shortened(str(most), 18)}{least}; {trn('{count} train', '{count} trains', len(own))}"
+            axes.annotate(text, (added.max(), k), (6, 0), textcoords="offset points", va="center", fontsize=SMALLEST, color=INK)
+        axes.set_xlim(0.0, 1.75 * worst.iloc[0] / size)
         _name_rows(axes, [outages.told(case) for case in cases])
-        axes.set_xlabel(f"added to the lateness at timed calls [{unit}]")
-        more = f", the {len(cases)} worst of {len(worst)} cases" if len(cases) < len(worst) else ""
-        words = f"{title}: delays that outages add{more}\nA dot for each train; beside them the train with most and how many"
-        words += "; at least: it stands for good"
-        figure.suptitle(words, x=0.01, ha="left", fontsize=10)
+        axes.tick_params(axis="x", labelsize=8)
+        note = tr("a dot for each train; beside them the train with most and how many; at least: it stands for good")
+        told_of = tr("added to the lateness at timed calls [{unit}]", unit=unit)
+        axes.set_xlabel("\n".join([told_of, *in_lines(note, 58)]), fontsize=8)
+        more = tr(", the {shown} worst of {every} cases", shown=len(cases), every=len(worst)) if len(cases) < len(worst) else ""
+        head(figure, tr("{study}: delays that outages add", study=title) + more)
         _grid_legend(figure, outages, cases)
         return figure
 
@@ -258,9 +286,9 @@ def outage_delays(outages: Outages, title: str) -> Figure | None:
 def _grid_legend(figure: Figure, outages: Outages, cases: Sequence[str]) -> None:
     shown = [grid for grid in outages.grids if any(outages.by_id[case]["grid"] == grid for case in cases)]
     style: Any = {"marker": "o", "linestyle": "none"}
-    handles = [Line2D([], [], color=GRID_STYLES.get(g, (GREY, ""))[0], label=f"{g} grid voltage", **style) for g in shown]
+    handles = [Line2D([], [], color=GRID_STYLES.get(g, (GREY, ""))[0], label=grid_told(g), **style) for g in shown]
     if len(shown) > 1:
-        figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=8)
+        legend_below(figure, handles, [str(handle.get_label()) for handle in handles])
 
 
 def worst_utilisation(outages: Outages, title: str) -> Figure | None:
@@ -272,7 +300,7 @@ def worst_utilisation(outages: Outages, title: str) -> Figure | None:
     shown = rows.sort_values("utilisation_percent", ascending=False, kind="stable").head(MOST_ROWS)
     permitted = outages.scenario.sizing.utilisation_percent
     with mpl.rc_context(STYLE):
-        figure = new_figure(WIDTH, 1.4 + ROW * max(len(shown), 4))
+        figure = new_figure(PAGE, 1.4 + ROW * max(len(shown), 4))
         axes = figure.add_subplot()
         for k, row in enumerate(shown.to_dict("records")):
             base, use = float(row["base_percent"]), float(row["utilisation_percent"])
@@ -280,16 +308,18 @@ def worst_utilisation(outages: Outages, title: str) -> Figure | None:
                 axes.plot([base, use], [k, k], color=GREY, linewidth=1.0, zorder=1)
                 axes.plot([base], [k], "o", color=BLUE, markersize=4.5, markerfacecolor="white")
             axes.plot([use], [k], "o", color=margin_colour(use, permitted), markersize=5.0)
-            text = f"{use:.0f} %, {window_words(row['window_s'])}: {outages.told(row['case'])}"
-            axes.annotate(text, (use, k), (6, 0), textcoords="offset points", va="center", fontsize=6.5, bbox=BARE)
+            text = f"{number(use, 0)} %, {window_told(row['window_s'])}: {shortened(outages.told(row['case']), 46)}"
+            axes.annotate(text, (use, k), (6, 0), textcoords="offset points", va="center", fontsize=SMALLEST, bbox=BARE)
         axes.axvline(permitted, color=INK, linewidth=0.9, linestyle=(0, (5, 3)))
-        axes.set_xlim(0.0, 1.55 * max(float(shown["utilisation_percent"].max()), permitted))
+        top = float(shown["utilisation_percent"].max())
+        axes.set_xlim(0.0, 2.9 * max(top, permitted))
         _name_rows(axes, [str(device) for device in shown["device"]])
         tight = TIGHT_PERCENT / 100.0 * permitted
-        axes.set_xlabel(
-            "utilisation of what the rating permits [%]: ring nothing out, dot worst case "
-            f"(green up to {tight:g} %, amber to {permitted:g} %, red beyond)"
-        )
-        more = f", the {len(shown)} highest of {len(rows)} rated devices" if len(shown) < len(rows) else ""
-        figure.suptitle(f"{title}: utilisation in the worst outage{more}", x=0.01, ha="left", fontsize=11)
+        axes.set_xticks([tick for tick in axes.get_xticks() if tick <= 1.1 * max(top, permitted)])
+        axes.tick_params(axis="x", labelsize=8)
+        ends = {"low": number(tight), "high": number(permitted)}
+        note = tr("ring: nothing out; dot: worst case (green up to {low} %, amber to {high} %, red beyond)", **ends)
+        axes.set_xlabel("\n".join([tr("utilisation of what the rating permits [%]"), *in_lines(note, 58)]), fontsize=8)
+        more = tr(", the {shown} highest of {every} rated devices", shown=len(shown), every=len(rows))
+        head(figure, tr("{study}: utilisation in the worst outage", study=title) + (more if len(shown) < len(rows) else ""))
         return figure

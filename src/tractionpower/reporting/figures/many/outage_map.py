@@ -12,25 +12,25 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 
-from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages
+from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages, grid_told
 from tractionpower.reporting.facts.places import told
-from tractionpower.reporting.figures.base.axes import mark_devices
-from tractionpower.reporting.figures.base.labels import row_name
-from tractionpower.reporting.figures.base.style import INK, STYLE, VERMILION, new_figure
+from tractionpower.reporting.figures.base.style import INK, PAGE, SMALLEST, STYLE, VERMILION, new_figure
+from tractionpower.reporting.figures.supply.km_axis import name_devices, name_stations
+from tractionpower.reporting.figures.supply.panels import LETTER_7, head, shortened
 from tractionpower.reporting.figures.supply.useful_figures import colour_classes
+from tractionpower.reporting.texts import number, tr
 
 MAP = "outages_by_km"
 """Beginning of the names of the maps."""
 
-WIDTH = 11.7
-MOST_ROWS = 60
+MOST_ROWS = 56
 """Outages of one map; with more there is one for each kind, of those with the lowest voltages."""
 
 ROW = 0.125
 """Height of an outage [inches]."""
 
-LABELS = 2.6
-"""Width that names and colour bar take [inches]."""
+MOST_LETTERS = 40
+"""Letters of a name beside a row."""
 
 GAP_KM = 0.5
 """Length of a bin of the profiles [km]."""
@@ -50,10 +50,10 @@ def outage_maps(outages: Outages, title: str) -> Iterator[tuple[str, Figure]]:
     for grid in outages.grids:
         if grid == "high" and len(outages.grids) > 1:
             continue  # it raises voltages; low ones are what matters here
-        for number, tracks in enumerate(lines):
+        for count, tracks in enumerate(lines, 1):
             for part, rows, words in _parts(outages, grid):
-                ends = ("" if grid == "normal" else f"_{grid}") + (f"_line_{number + 1}" if len(lines) > 1 else "")
-                what = f"{title}: lowest voltage of all tracks in every outage, {grid} grid voltage"
+                ends = ("" if grid == "normal" else f"_{grid}") + (f"_line_{count}" if len(lines) > 1 else "")
+                what = tr("{study}: lowest voltage of all tracks in every outage, {grid}", study=title, grid=grid_told(grid))
                 line_words = f", {told(tracks)}" if len(lines) > 1 else ""
                 figure = _draw(outages, rows, tracks, classes, f"{what}{line_words}{words}")
                 yield f"{MAP}{ends}{part}", figure
@@ -71,8 +71,9 @@ def _parts(outages: Outages, grid: str) -> Iterator[tuple[str, pd.DataFrame, str
     for kind in dict.fromkeys(rows.loc[rows["kind"] != "base", "kind"]):
         own = rows[rows["kind"] == kind]
         kept = own.sort_values("lowest_voltage_v", kind="stable").head(MOST_ROWS).index
-        words = f"\n{KINDS_WORDS.get(kind, kind)}"
-        words += f": the {len(kept)} with the lowest voltages of {len(own)}" if len(kept) < len(own) else ""
+        words = f"\n{tr(KINDS_WORDS.get(kind, kind))}"
+        lowest = tr(": the {shown} with the lowest voltages of {every}", shown=len(kept), every=len(own))
+        words += lowest if len(kept) < len(own) else ""
         yield f"_{kind}", pd.concat([base, own[own.index.isin(kept)]]), words
 
 
@@ -90,26 +91,33 @@ def _draw(outages: Outages, rows: pd.DataFrame, tracks: Sequence[str], classes: 
     own = profile[profile["track"].isin(list(tracks)) & profile["case"].isin(list(rows["case"]))]
     low, high = (float(own["km"].min()), float(own["km"].max())) if len(own) else (0.0, 1.0)
     with mpl.rc_context(STYLE | {"axes.grid": False}):
-        figure = new_figure(WIDTH, 1.7 + ROW * max(len(rows), 14))
+        names = [shortened(words, MOST_LETTERS) for words in rows["words"]]
+        inches = PAGE - 0.3 - LETTER_7 * max(map(len, names), default=0)
+        figure = new_figure(PAGE, 2.9 + ROW * max(len(rows), 8))
         axes = figure.add_subplot()
         edges, volts = _grid(own, list(rows["case"]), low, high)
         colours = mpl.colormaps["viridis"].with_extremes(under=VERMILION)
         norm = BoundaryNorm(classes, colours.N)
         below = bool((volts[np.isfinite(volts)] < classes[0]).any())
-        mesh = axes.pcolormesh(edges, np.arange(len(rows) + 1), volts, cmap=colours, norm=norm)
+        mesh = axes.pcolormesh(edges, np.arange(len(rows) + 1), volts, cmap=colours, norm=norm, rasterized=True)
         axes.set_facecolor("#e4e4e4")
         axes.set_xlim(edges[0], edges[-1])
         axes.set_ylim(len(rows), 0)
-        axes.set_yticks(np.arange(len(rows)) + 0.5, [row_name(words) for words in rows["words"]], fontsize=6.5)
+        axes.set_yticks(np.arange(len(rows)) + 0.5, names, fontsize=SMALLEST)
         axes.tick_params(axis="y", length=0)
-        red = f"; red: below {classes[0]:g} V" if below else ""
-        axes.set_xlabel(f"kilometre of the line [km]; white ring: what is out; grey: no voltage or no train{red}")
+        axes.tick_params(axis="x", labelsize=8)
         _mark_outages(axes, outages, rows, tracks)
-        mark_devices(axes, [d for d in outages.places.devices(tracks) if d[2]], WIDTH - LABELS)
+        name_devices(axes, [d for d in outages.places.devices(tracks) if d[2]], inches)
+        name_stations(axes, outages.places.stations(tracks), inches)
         _part_kinds(axes, list(rows["kind"]))
-        bar = figure.colorbar(mesh, ax=axes, pad=0.01, aspect=40, extend="min" if below else "neither")
-        bar.set_label("lowest voltage of the run [V]")
-        axes.set_title(title, loc="left", pad=24, fontsize=10)
+        bar = figure.colorbar(
+            mesh, ax=axes, location="bottom", pad=0.015, aspect=50, shrink=0.9, extend="min" if below else "neither"
+        )
+        bar.ax.tick_params(labelsize=SMALLEST)
+        red = tr("; red: below {volts} V", volts=number(float(classes[0]))) if below else ""
+        note = tr("white ring: what is out; grey: no voltage or no train") + red
+        bar.set_label(f"{tr('lowest voltage of the run [V]')}\n{note}", fontsize=8)
+        head(figure, title)
         return figure
 
 
@@ -130,17 +138,17 @@ def _mark_outages(axes: Axes, outages: Outages, rows: pd.DataFrame, tracks: Sequ
     """Put a ring at the kilometre of what is out."""
     here = {name: km for km, name, _ in outages.places.devices(tracks)}
     low, high = axes.get_xlim()
-    for number, (subject, km) in enumerate(zip(rows["subject"], rows["at_km"], strict=True)):
+    for row, (subject, km) in enumerate(zip(rows["subject"], rows["at_km"], strict=True)):
         station = max((name for name in here if subject == name or subject.startswith(f"{name} ")), key=len, default="")
         at = here.get(station, km if len(outages.places.lines) == 1 else np.nan)
         if np.isfinite(at) and low <= at <= high:
             style: Any = {"markersize": 3.6, "markerfacecolor": "none", "markeredgecolor": "white", "markeredgewidth": 0.9}
-            axes.plot([at], [number + 0.5], "o", **style)
+            axes.plot([at], [row + 0.5], "o", **style)
 
 
 def _part_kinds(axes: Axes, kinds: list[str]) -> None:
     """Draw a line between kinds of outages."""
-    for number in range(1, len(kinds)):
-        if kinds[number] != kinds[number - 1]:
-            axes.axhline(number, color="white", linewidth=2.0)
-            axes.axhline(number, color=INK, linewidth=0.6)
+    for row in range(1, len(kinds)):
+        if kinds[row] != kinds[row - 1]:
+            axes.axhline(row, color="white", linewidth=2.0)
+            axes.axhline(row, color=INK, linewidth=0.6)

@@ -14,19 +14,25 @@ from matplotlib.figure import Figure
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.sweep_data import WORDS, SweepData
 from tractionpower.reporting.figures.base.axes import draw_limits
-from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, STYLE, VERMILION, new_figure, save_all
+from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, PAGE, SMALLEST, STYLE, VERMILION, new_figure, save_all
+from tractionpower.reporting.figures.supply.panels import LETTER_7, head, legend_below, once, shortened
+from tractionpower.reporting.texts import number, tr
 from tractionpower.results.results import Results
 from tractionpower.studies.sweep.cases import number_of
 from tractionpower.studies.sweep.differences import HIGHER_IS_BETTER, NOT_JUDGED
 
-WIDTH = 10.5
 MOST_PANELS = 4
 """Figures that are drawn, one in each panel."""
 
 MOST_BARS = 25
 """Cases with bars; with more, those that differ most from the base."""
 
-MOST_LETTERS = 48
+MOST_LETTERS = 40
+"""Letters of a name of a case or an input."""
+
+MOST_VALUE = 20
+"""Letters of a value below an axis."""
+
 MOST_CELLS = 150
 """Cells of a map beyond which the values are not written into them."""
 
@@ -72,27 +78,37 @@ def _curves(data: SweepData) -> Figure:
     path = data.paths[0]
     values = data.keys[path]
     numbers = [number_of(value) for value in values]
-    is_numeric = all(number is not None for number in numbers)
+    is_numeric = all(each is not None for each in numbers)
     at = dict(zip(values, numbers if is_numeric else range(len(values)), strict=True))
     shown = data.figures(MOST_PANELS)
-    figure = new_figure(WIDTH, 1.5 + 1.9 * len(shown))
+    figure = new_figure(PAGE, 1.4 + 1.5 * len(shown))
     panels = list(np.atleast_1d(figure.subplots(len(shown), 1, sharex=True)))
     rows = data.measured.set_index("case").join(data.changes, how="inner")
     rows = rows.assign(_at=[float(at[value] or 0.0) for value in rows[path]]).sort_values("_at", kind="stable")
     for axes, name in zip(panels, shown, strict=True):
         style: Any = {"marker": "o", "markersize": 4.5, "linewidth": 1.5 if is_numeric else 0.0}
-        axes.plot(rows["_at"], rows[name], color=BLUE, label="variants", **style)
+        axes.plot(rows["_at"], rows[name], color=BLUE, label=tr("variants"), **style)
         if data.base is not None and pd.notna(data.base[name]):
-            axes.axhline(float(data.base[name]), color=VERMILION, linestyle=(0, (5, 3)), linewidth=1.3, label="base")
-        axes.set_ylabel(WORDS[name])
+            axes.axhline(float(data.base[name]), color=VERMILION, linestyle=(0, (5, 3)), linewidth=1.3, label=tr("base"))
+        axes.tick_params(labelsize=8)
+        axes.set_ylabel(tr(WORDS[name]), fontsize=8)
         if name in VOLTAGES:
             draw_limits(axes, data.scenario)
     _mark_missing(panels, data, path, at)
     if not is_numeric or len(values) <= 12:
-        turned: Any = {"rotation": 30, "ha": "right"} if sum(map(len, values)) > 90 else {}
-        panels[-1].set_xticks([float(at[value] or 0.0) for value in values], values, **turned)
-    panels[-1].set_xlabel(data.names[path])
-    return _finished(figure, panels, f"{data.title}: {data.names[path]}")
+        texts = [_value(value) for value in values]
+        wide = LETTER_7 * (sum(map(len, texts)) + 2 * len(texts)) > PAGE - 1.0
+        turned: Any = {"rotation": 45, "ha": "right", "rotation_mode": "anchor"} if wide else {}
+        panels[-1].set_xticks([float(at[value] or 0.0) for value in values], texts, **turned)
+    panels[-1].set_xlabel(shortened(data.names[path], 90), fontsize=8)
+    head(figure, f"{data.title}: {shortened(data.names[path], 90)}")
+    legend_below(figure, *once(panels))
+    return figure
+
+
+def _value(value: str) -> str:
+    """Return a value of an input below an axis."""
+    return shortened(value, MOST_VALUE)
 
 
 def _mark_missing(panels: list[Axes], data: SweepData, path: str, at: dict[str, Any]) -> None:
@@ -101,7 +117,7 @@ def _mark_missing(panels: list[Axes], data: SweepData, path: str, at: dict[str, 
     if len(missing):
         x = [float(at[value] or 0.0) for value in missing[path]]
         style: Any = {"color": INK, "transform": panels[-1].get_xaxis_transform(), "clip_on": False}
-        panels[-1].plot(x, [0.03] * len(x), "x", label="refused or failed", **style)
+        panels[-1].plot(x, [0.03] * len(x), "x", label=tr("refused or failed"), **style)
 
 
 def _maps(data: SweepData) -> Figure:
@@ -111,22 +127,23 @@ def _maps(data: SweepData) -> Figure:
         across, down = down, across
     columns, rows = data.keys[across], data.keys[down]
     shown = data.figures(MOST_PANELS)
-    wide = 2 if len(shown) > 1 and len(columns) <= 12 else 1
+    wide = 2 if len(shown) > 1 and len(columns) <= 7 else 1
     high = -(-len(shown) // wide)
-    figure = new_figure(WIDTH, 1.0 + high * max(2.2, 0.34 * len(rows) + 1.1), between=0.06)
+    figure = new_figure(PAGE, 1.0 + high * max(2.0, 0.3 * len(rows) + 1.1), between=0.06)
     found = data.changes.join(data.measured.set_index("case"))
-    for number, name in enumerate(shown):
-        axes = figure.add_subplot(high, wide, number + 1)
+    for place, name in enumerate(shown, 1):
+        axes = figure.add_subplot(high, wide, place)
         grid = found.pivot_table(index=down, columns=across, values=name, aggfunc="first").reindex(index=rows, columns=columns)
         _draw_map(axes, grid.to_numpy(float), name, figure)
-        axes.set_title(WORDS[name].replace("\n", " "), loc="left", fontsize=9)
-        crowded = max(map(len, columns)) * len(columns) > 60
+        axes.set_title(tr(WORDS[name]).replace("\n", " "), loc="left", fontsize=SMALLEST)
+        crowded = LETTER_7 * (max(map(len, columns)) + 2) * len(columns) > (PAGE - 1.5) / wide - 1.0
         turned: Any = {"rotation": 45, "ha": "right", "rotation_mode": "anchor"} if crowded else {}
-        axes.set_xticks(range(len(columns)), columns, **turned)
-        axes.set_yticks(range(len(rows)), rows)
-        axes.set_xlabel(data.names[across])
-        axes.set_ylabel(data.names[down])
-    figure.suptitle(f"{data.title}: {data.names[across]} and {data.names[down]}", x=0.01, ha="left", fontsize=11)
+        axes.set_xticks(range(len(columns)), [_value(text) for text in columns], fontsize=SMALLEST, **turned)
+        axes.set_yticks(range(len(rows)), [_value(text) for text in rows], fontsize=SMALLEST)
+        axes.set_xlabel(shortened(data.names[across], MOST_LETTERS), fontsize=SMALLEST)
+        axes.set_ylabel(shortened(data.names[down], MOST_LETTERS), fontsize=SMALLEST)
+    both = {"first": shortened(data.names[across], 60), "second": shortened(data.names[down], 60)}
+    head(figure, tr("{study}: {first} and {second}", study=data.title, **both))
     return figure
 
 
@@ -136,16 +153,18 @@ def _draw_map(axes: Axes, values: np.ndarray, name: str, figure: Figure) -> None
     axes.set_facecolor("#eeeeee")
     colours = mpl.colormaps["Blues" if name in NOT_JUDGED else "YlOrRd_r" if name in HIGHER_IS_BETTER else "YlOrRd"]
     image = axes.imshow(values, aspect="auto", cmap=colours)
-    figure.colorbar(image, ax=axes, pad=0.02)
+    figure.colorbar(image, ax=axes, pad=0.02).ax.tick_params(labelsize=SMALLEST)
     for row, column in np.argwhere(np.isnan(values)):
-        axes.text(column, row, "none", ha="center", va="center", fontsize=7.5, color=GREY)
+        axes.text(column, row, tr("none"), ha="center", va="center", fontsize=SMALLEST, color=GREY)
     if values.size > MOST_CELLS:
         return
     digits = _digits(values)
     for row, column in np.argwhere(~np.isnan(values)):
         red, green, blue, _ = image.cmap(image.norm(values[row, column]))
         ink = INK if 0.3 * red + 0.6 * green + 0.1 * blue > 0.5 else "white"
-        axes.text(column, row, f"{values[row, column]:z.{digits}f}", ha="center", va="center", fontsize=7.5, color=ink)
+        axes.text(
+            column, row, number(values[row, column], digits, bare=False), ha="center", va="center", fontsize=SMALLEST, color=ink
+        )
 
 
 def _digits(values: np.ndarray) -> int:
@@ -164,7 +183,7 @@ def _bars(data: SweepData) -> Figure:
     first = shown[0]
     order = wide.loc[kept].sort_values(first, ascending=first not in HIGHER_IS_BETTER, kind="stable")
     labels, told = _labels(data, list(order.index))
-    figure = new_figure(WIDTH, 1.6 + 0.24 * len(order))
+    figure = new_figure(PAGE, 1.5 + 0.19 * len(order))
     panels = list(np.atleast_1d(figure.subplots(1, len(shown), sharey=True)))
     for axes, name in zip(panels, shown, strict=True):
         sign = -1.0 if name in HIGHER_IS_BETTER else 1.0
@@ -173,15 +192,16 @@ def _bars(data: SweepData) -> Figure:
         colours = [GREY if neutral else VERMILION if bad else BLUE for bad in worse]
         axes.barh(range(len(order)), order[name].fillna(0.0), color=colours, height=0.7)
         axes.axvline(0.0, color=INK, linewidth=0.8)
-        axes.set_xlabel(f"{WORDS[name]}\nless that of the base", fontsize=8)
-        axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
+        axes.set_xlabel(tr("{figure}\nless that of the base", figure=tr(WORDS[name])), fontsize=SMALLEST)
+        axes.tick_params(axis="x", labelsize=SMALLEST)
+        axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(3))
         axes.grid(visible=False, axis="y")
         axes.set_axisbelow(True)
-    panels[0].set_yticks(range(len(order)), labels, fontsize=7.5)
-    panels[0].set_ylabel(told, fontsize=7.5)
+    panels[0].set_yticks(range(len(order)), labels, fontsize=SMALLEST)
+    panels[0].set_ylabel(shortened(told, 100), fontsize=SMALLEST)
     left = len(wide) - len(order)
-    more = f"; {left} cases that differ less are not drawn" if left else ""
-    figure.suptitle(f"{data.title}: differences from the base (red: worse, blue: better){more}", x=0.01, ha="left", fontsize=11)
+    more = tr("; {count} cases that differ less are not drawn", count=left) if left else ""
+    head(figure, tr("{study}: differences from the base (red: worse, blue: better)", study=data.title) + more)
     return figure
 
 
@@ -190,23 +210,23 @@ def _labels(data: SweepData, cases: list[str]) -> tuple[list[str], str]:
     changes = data.changes.loc[cases]
     if changes.notna().all(axis=None):
         texts = [", ".join(_short(str(value)) for value in changes.loc[case]) for case in cases]
-        told = f"case: {', '.join(data.names[path] for path in data.paths)}"
+        told = tr("case: {inputs}", inputs=", ".join(data.names[path] for path in data.paths))
     else:
         subjects = dict(zip(data.cases["case"], data.cases["subject"], strict=True))
-        texts, told = [subjects[case] for case in cases], "case"
+        texts, told = [subjects[case] for case in cases], tr("case")
     labels = [f"{case}: {text}" for case, text in zip(cases, texts, strict=True)]
-    return [text if len(text) <= MOST_LETTERS else text[: MOST_LETTERS - 1] + "…" for text in labels], told
+    return [shortened(text, MOST_LETTERS) for text in labels], told
 
 
 def _short(value: str) -> str:
-    number = number_of(value)
-    return value if number is None else f"{number:.4g}"
+    found = number_of(value)
+    return value if found is None else f"{found:.4g}"
 
 
 def _clouds(data: SweepData, paths: list[str]) -> Figure:
     """Draw each figure over each input, a point for each case."""
     shown = data.figures(MOST_PANELS)
-    figure = new_figure(WIDTH, 1.0 + 2.0 * len(shown))
+    figure = new_figure(PAGE, 1.0 + 1.5 * len(shown))
     grid = figure.subplots(len(shown), len(paths), sharey="row", sharex="col", squeeze=False)
     rows = data.changes.join(data.measured.set_index("case"), how="inner")
     for line, name in zip(grid, shown, strict=True):
@@ -216,19 +236,11 @@ def _clouds(data: SweepData, paths: list[str]) -> Figure:
             axes.plot(x, own[name], "o", color=BLUE, markersize=3.5, alpha=0.7, markeredgewidth=0.0)
             if data.base is not None and pd.notna(data.base[name]):
                 axes.axhline(float(data.base[name]), color=VERMILION, linestyle=(0, (5, 3)), linewidth=1.2)
-        line[0].set_ylabel(WORDS[name])
+        line[0].set_ylabel(tr(WORDS[name]), fontsize=8)
     for axes, path in zip(grid[-1], paths, strict=True):
-        axes.set_xlabel(data.names[path])
-        axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(5))
-    title = f"{data.title}: figures of {len(rows)} cases over what is varied (dashed: base)"
-    figure.suptitle(title, x=0.01, ha="left", fontsize=11)
-    return figure
-
-
-def _finished(figure: Figure, panels: list[Axes], title: str) -> Figure:
-    figure.suptitle(title, x=0.01, ha="left", fontsize=11)
-    found: dict[str, Any] = {}
-    for axes in panels:
-        found |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
-    figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=3, fontsize=8)
+        axes.set_xlabel(shortened(data.names[path], int(PAGE / len(paths) / LETTER_7)), fontsize=SMALLEST)
+        axes.xaxis.set_major_locator(mpl.ticker.MaxNLocator(4))
+    for axes in grid.ravel():
+        axes.tick_params(labelsize=SMALLEST)
+    head(figure, tr("{study}: figures of {count} cases over what is varied (dashed: base)", study=data.title, count=len(rows)))
     return figure

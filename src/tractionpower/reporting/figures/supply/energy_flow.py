@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from tractionpower.reporting.facts.energy_flow import ON_BOARD, RETURNED, Flow, Stage, energy_stages
 from tractionpower.reporting.facts.run_data import RunData
-from tractionpower.reporting.figures.base.style import GREEN, INK, ORANGE, PALE, PURPLE, SKY, STYLE, new_figure
-from tractionpower.reporting.figures.supply.panels import PAGE, SMALL, head, in_lines, legend_below
+from tractionpower.reporting.figures.base.style import GREEN, INK, ORANGE, PAGE, PALE, PURPLE, SKY, SMALLEST, STYLE, new_figure
+from tractionpower.reporting.figures.supply.panels import head, in_lines, legend_below
 from tractionpower.reporting.texts import number, tr
 
 Array = NDArray[Any]
@@ -104,7 +104,7 @@ def energy_flow(data: RunData) -> Figure | None:
         }
         used = {band.colour for band in layout.bands} | {part[4] for part in layout.parts}
         handles = [Patch(color=KINDS[kind], label=words) for kind, words in kinds.items() if KINDS[kind] in used]
-        legend_below(figure, handles, [handle.get_label() for handle in handles], 3)
+        legend_below(figure, handles, [str(handle.get_label()) for handle in handles], 3)
         return figure
 
 
@@ -178,9 +178,7 @@ def _row(flow: Flow, layout: Layout, side: str, told: str) -> tuple[float, float
     return width, max(width + BEND, LINE * len(lines)) + BETWEEN, lines
 
 
-def _gain(
-    layout: Layout, flow: Flow, at: tuple[float, float, float], colour: str, tell: Any
-) -> tuple[float, float]:
+def _gain(layout: Layout, flow: Flow, at: tuple[float, float, float], colour: str, tell: Any) -> tuple[float, float]:
     """Lay out a flow that joins from the left; return the new left edge and the end of its row."""
     left, right, y = at
     width, height, lines = _row(flow, layout, "left", tell(flow.kwh))
@@ -200,9 +198,7 @@ def _gain(
     return left - width, bottom
 
 
-def _spend(
-    layout: Layout, flow: Flow, at: tuple[float, float, float], colour: str, tell: Any
-) -> tuple[float, float]:
+def _spend(layout: Layout, flow: Flow, at: tuple[float, float, float], colour: str, tell: Any) -> tuple[float, float]:
     """Lay out a flow that leaves to the right; return the new right edge and the end of its row."""
     left, right, y = at
     width, height, lines = _row(flow, layout, "right", tell(flow.kwh))
@@ -290,6 +286,6 @@ def _draw(axes: Axes, layout: Layout) -> None:
             axes.plot([start, end], [y, y], color=INK, linewidth=0.5, linestyle=(0, (1, 2)), zorder=0.8)
     for words in layout.words:
         axes.text(
-            words.x, words.y, "\n".join(words.lines), ha="left", va="center", fontsize=SMALL, color=INK, linespacing=1.1,
+            words.x, words.y, "\n".join(words.lines), ha="left", va="center", fontsize=SMALLEST, color=INK, linespacing=1.1,
             fontweight="bold" if words.bold else "normal", zorder=3.0,
         )  # fmt: skip

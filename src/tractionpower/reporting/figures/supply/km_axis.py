@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 
 from tractionpower.reporting.facts.places import Device
 from tractionpower.reporting.figures.base.labels import fitting
-from tractionpower.reporting.figures.base.style import GREY, INK
-from tractionpower.reporting.figures.supply.panels import LETTER_7, SMALL, shortened
+from tractionpower.reporting.figures.base.style import GREY, INK, SMALLEST
+from tractionpower.reporting.figures.supply.panels import LETTER_7, shortened
 from tractionpower.reporting.texts import tr
 
 LEVELS = 2
@@ -58,7 +58,7 @@ def name_devices(axes: Axes, devices: Sequence[Device], inches: float, *, names:
             style: Any = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points", "ha": "center", "color": INK}
             axes.annotate("▲" if substations[k] else "■", (place, 1.0), (0, 1), va="bottom", fontsize=6.0, **style)
             if k in rows:
-                axes.annotate(text, (place, 1.0), (0, 8 + 72 * ROW * rows[k]), va="bottom", fontsize=SMALL, **style)
+                axes.annotate(text, (place, 1.0), (0, 8 + 72 * ROW * rows[k]), va="bottom", fontsize=SMALLEST, **style)
 
 
 def name_stations(axes: Axes, stations: Sequence[tuple[float, str]], inches: float) -> None:
@@ -76,6 +76,6 @@ def name_stations(axes: Axes, stations: Sequence[tuple[float, str]], inches: flo
         shown = fitting(places, [False] * len(places), ROW * per_inch) if upright else level
         bottom = axes.secondary_xaxis(0.0)
         bottom.set_xticks([places[k] for k in shown], [inside[k][1] for k in shown], rotation=90 if upright else 0)
-        bottom.tick_params(direction="in", length=4, pad=15, labelsize=SMALL, colors=INK, color=INK)
+        bottom.tick_params(direction="in", length=4, pad=15, labelsize=SMALLEST, colors=INK, color=INK)
         bottom.spines["bottom"].set_visible(False)
     bottom.set_xlabel(tr("kilometre of the line [km]"), fontsize=8)

@@ -11,18 +11,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from tractionpower.reporting.figures.base.axes import clock_label, set_clock
-from tractionpower.reporting.figures.base.style import new_figure
+from tractionpower.reporting.figures.base.style import PAGE, SMALLEST, TITLE, new_figure
 
-PAGE = 16.0 / 2.54
-"""Width of the figures [inches]: that of the text of a report on A4."""
-
-SMALL = 7.0
-"""Size of the smallest text [points]."""
-
-HEADING = 10.0
-"""Size of titles [points]."""
-
-LETTER_7 = 0.058
+LETTER_7 = 0.054
 """Mean width of a letter of the smallest text [inches]."""
 
 LEGEND_LETTERS = 96
@@ -43,7 +34,7 @@ def shortened(text: str, most: int) -> str:
 
 def head(figure: Figure, title: str) -> None:
     """Write a title over a figure; the writer of figures breaks lines that are too long. A name of hundreds of letters is cut."""
-    figure.suptitle(shortened_title(title), x=0.01, ha="left", fontsize=HEADING)
+    figure.suptitle(shortened_title(title), x=0.01, ha="left", fontsize=TITLE)
 
 
 def legend_below(figure: Figure, handles: Sequence[Any], labels: Sequence[str], most: int = 4) -> None:
@@ -51,7 +42,7 @@ def legend_below(figure: Figure, handles: Sequence[Any], labels: Sequence[str], 
     columns = next((n for n in range(min(most, len(labels)), 1, -1) if _legend_inches(labels, n) <= PAGE), 1)
     figure.legend(
         handles, [shortened(label, LEGEND_LETTERS) for label in labels], loc="outside lower center", ncols=columns,
-        fontsize=SMALL, columnspacing=1.2, handlelength=2.8,
+        fontsize=SMALLEST, columnspacing=1.2, handlelength=2.8,
     )  # fmt: skip
 
 
@@ -116,7 +107,7 @@ def time_panels(count: int, begin: float, end: float) -> tuple[Figure, Sequence[
     grid: NDArray[Any] = figure.subplots(lines, columns, sharex=True, sharey=True, squeeze=False)
     panels = list(grid.T.ravel())
     for axes in panels:
-        axes.tick_params(labelsize=SMALL)
+        axes.tick_params(labelsize=SMALLEST)
     for axes in panels[count:]:  # nothing but their clocks, so that all columns end alike
         axes.set_frame_on(False)
         axes.grid(visible=False)
@@ -124,7 +115,7 @@ def time_panels(count: int, begin: float, end: float) -> tuple[Figure, Sequence[
     set_clock(panels[0], begin, end, 8 if columns == 1 else 6)
     panels[0].set_xlim(begin, end)
     for axes in grid[-1]:
-        axes.set_xlabel(clock_label(panels[0]), fontsize=SMALL)
+        axes.set_xlabel(clock_label(panels[0]), fontsize=SMALLEST)
     return figure, panels
 
 

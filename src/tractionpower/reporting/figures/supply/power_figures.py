@@ -15,12 +15,10 @@ from tractionpower.reporting.facts.device_words import window_told
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.facts.series import envelope, interval, sliding_mean
 from tractionpower.reporting.facts.substation_loads import Load, substation_loads
-from tractionpower.reporting.figures.base.style import BLUE, INK, PURPLE, SKY, STYLE, VERMILION
+from tractionpower.reporting.figures.base.style import BLUE, INK, PAGE, PURPLE, SKY, SMALLEST, STYLE, VERMILION
 from tractionpower.reporting.figures.supply.panels import (
     LETTER_7,
     MOST_PANELS,
-    PAGE,
-    SMALL,
     columns_for,
     head,
     legend_below,
@@ -79,7 +77,9 @@ def substation_currents(data: RunData) -> Figure | None:
         for window_s, multiple in load.rating.windows:
             permitted = multiple * load.rating.rated_a
             if multiple > 1.0 and permitted <= NEAR * top:
-                words = tr("{multiple} times rated: RMS over {window} at most", multiple=number(multiple, 2), window=_window(window_s))
+                words = tr(
+                    "{multiple} times rated: RMS over {window} at most", multiple=number(multiple, 2), window=_window(window_s)
+                )
                 found.append((permitted, words, OVERLOAD))
         return found
 
@@ -117,7 +117,7 @@ def _draw(
                 if np.isfinite(value):
                     axes.axhline(value, label=label, **style)
             name = shortened(load.station.id, letters - len(title(load, "")))
-            axes.set_title(title(load, name), loc="left", fontsize=SMALL, pad=3)
+            axes.set_title(title(load, name), loc="left", fontsize=SMALLEST, pad=3)
         figure.supylabel(words[0], fontsize=9)
         more = tr(", the {shown} most loaded of {every}", shown=MOST_PANELS, every=len(every)) if len(shown) < len(every) else ""
         head(figure, f"{data.title}: {words[1]}{more}")

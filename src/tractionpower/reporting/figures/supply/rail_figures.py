@@ -18,9 +18,22 @@ from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.facts.series import interval, peaks_kept
 from tractionpower.reporting.figures.base.axes import clock_label, panels_of_lines, set_clock, with_margin
 from tractionpower.reporting.figures.base.labels import fitting
-from tractionpower.reporting.figures.base.style import BLUE, COLOURS, DASHES, GREEN, GREY, INK, SKY, STYLE, VERMILION, new_figure
+from tractionpower.reporting.figures.base.style import (
+    BLUE,
+    COLOURS,
+    DASHES,
+    GREEN,
+    GREY,
+    INK,
+    PAGE,
+    SKY,
+    SMALLEST,
+    STYLE,
+    VERMILION,
+    new_figure,
+)
 from tractionpower.reporting.figures.supply.km_axis import MOST_LETTERS, ROW, name_devices, name_stations
-from tractionpower.reporting.figures.supply.panels import PAGE, SMALL, head, legend_below, once, shortened
+from tractionpower.reporting.figures.supply.panels import head, legend_below, once, shortened
 from tractionpower.reporting.texts import number, recorded, tr
 
 INCHES = PAGE - 1.4
@@ -158,7 +171,7 @@ def _mark_peaks(axes: Axes, peaks: Sequence[tuple[str, float, str, float]], trac
             axes.plot(km, volts, "D", color=INK, markersize=4, zorder=4, linestyle="none", label=tr("extreme, under a train"))
             axes.annotate(
                 words, (km, volts), (4 if left else -4, 6 if volts > 0 else -6), textcoords="offset points",
-                ha="left" if left else "right", va="bottom" if volts > 0 else "top", fontsize=SMALL, color=INK, zorder=5,
+                ha="left" if left else "right", va="bottom" if volts > 0 else "top", fontsize=SMALLEST, color=INK, zorder=5,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85},
             )  # fmt: skip
 
@@ -225,7 +238,7 @@ def _draw_worst(axes: Axes, data: RunData, rails: pd.DataFrame) -> None:
     axes.set_ylabel(tr("rail potential [V]\nat the worst places"), fontsize=8)
     handles, labels = axes.get_legend_handles_labels()
     unique = dict(zip(labels, handles, strict=True))
-    axes.legend(unique.values(), unique.keys(), loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=SMALL)
+    axes.legend(unique.values(), unique.keys(), loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=SMALLEST)
 
 
 def _grid(rails: pd.DataFrame, track: str) -> pd.DataFrame:

@@ -27,20 +27,14 @@ from tractionpower.reporting.figures.base.style import (
     GREEN,
     INK,
     ORANGE,
+    PAGE,
     SKY,
+    SMALLEST,
     STYLE,
     VERMILION,
     new_figure,
 )
-from tractionpower.reporting.figures.supply.panels import (
-    PAGE,
-    SMALL,
-    head,
-    legend_below,
-    most_loaded,
-    shortened,
-    time_panels,
-)
+from tractionpower.reporting.figures.supply.panels import head, legend_below, most_loaded, shortened, time_panels
 from tractionpower.reporting.texts import number, tr
 
 MOST_BARS = 56
@@ -132,9 +126,9 @@ def _draw_utilisation(axes: Axes, rows: pd.DataFrame, permitted: float) -> None:
     place = np.arange(len(rows), dtype=float)
     drawn = axes.barh(place, values, 0.72, color=[margin_colour(value, permitted) for value in values])
     texts = [f"{number(value, 0)} %, {window_told(window)}" for value, window in zip(values, rows["window_s"], strict=True)]
-    axes.bar_label(drawn, texts, padding=2, fontsize=SMALL, color=INK, bbox=BARE)
+    axes.bar_label(drawn, texts, padding=2, fontsize=SMALLEST, color=INK, bbox=BARE)
     axes.axvline(permitted, color=INK, linewidth=0.9, linestyle=(0, (5, 3)))
-    axes.set_yticks(place, [shortened(str(name), MOST_LETTERS) for name in rows["device"]], fontsize=SMALL)
+    axes.set_yticks(place, [shortened(str(name), MOST_LETTERS) for name in rows["device"]], fontsize=SMALLEST)
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_axisbelow(True)
     axes.grid(visible=False, axis="y")
@@ -163,7 +157,7 @@ def device_load_duration(data: RunData) -> Figure | None:
             axes.set_title(words + (more if shown < every else ""), loc="left", fontsize=8)
             axes.set_ylabel(tr("current at least [A]"), fontsize=8)
             axes.tick_params(labelsize=8)
-            axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.04), fontsize=SMALL, handlelength=2.8)
+            axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.04), fontsize=SMALLEST, handlelength=2.8)
         panels[0].set_xlim(0.0, 100.0)
         panels[-1].set_xlabel(tr("share of the run [%]"), fontsize=8)
         head(figure, tr("{study}: load duration of the devices", study=data.title))
@@ -176,7 +170,13 @@ def _draw_durations(axes: Axes, rows: pd.DataFrame) -> tuple[int, int]:
     for row, (device, peak) in enumerate(highest.head(MOST_CURVES).items()):
         own = rows[rows["device"] == device].sort_values("share_percent", kind="stable")
         style: Any = {"color": COLOURS[row % len(COLOURS)], "linestyle": DASHES[row // len(COLOURS) % len(DASHES)]}
-        axes.plot(own["share_percent"], own["current_a"], linewidth=1.2, label=f"{shortened(str(device), 24)}: {number(peak, 0)} A", **style)
+        axes.plot(
+            own["share_percent"],
+            own["current_a"],
+            linewidth=1.2,
+            label=f"{shortened(str(device), 24)}: {number(peak, 0)} A",
+            **style,
+        )
     axes.set_ylim(0.0, None)
     return len(highest), min(len(highest), MOST_CURVES)
 
@@ -196,7 +196,7 @@ def sharing(data: RunData) -> Figure | None:
         shares, currents = figure.subplots(1, 2, sharey=True)
         for row, zone in enumerate(zones):
             _draw_zone(shares, currents, rows[rows["zone"] == zone], row)
-        shares.set_yticks(range(len(zones)), [shortened(zone, MOST_LETTERS) for zone in zones], fontsize=SMALL)
+        shares.set_yticks(range(len(zones)), [shortened(zone, MOST_LETTERS) for zone in zones], fontsize=SMALLEST)
         shares.set_ylim(len(zones) - 0.4, -0.6)
         shares.axvline(50.0, color=INK, linewidth=0.8, linestyle=(0, (5, 3)))
         shares.set_xlim(min(0.0, *shares.get_xlim()), max(100.0, shares.get_xlim()[1]))
@@ -221,7 +221,7 @@ def _draw_zone(shares: Axes, currents: Axes, rows: pd.DataFrame, line: int) -> N
         if np.isfinite(share):
             left = left if share > 0.0 else 0.0
             shares.barh(line, share, 0.7, left=left, color=colour)
-            style: Any = {"ha": "center", "va": "center", "color": "white" if colour == BLUE else INK, "fontsize": SMALL}
+            style: Any = {"ha": "center", "va": "center", "color": "white" if colour == BLUE else INK, "fontsize": SMALLEST}
             shares.text(left + share / 2, line, f"{number(share, 0)} %", **style)
             left += max(share, 0.0)
         at = line + 0.36 * (k - 0.5)
@@ -272,4 +272,4 @@ def _draw_demand(axes: Axes, rows: pd.DataFrame, name: str) -> None:
         axes.axhline(float(np.nanmax(contract)), zorder=3.0, **CONTRACT)
         title += tr(", contract {power} MW", power=number(np.nanmax(contract), 2, bare=False))
     axes.set_axisbelow(True)
-    axes.set_title(title, loc="left", fontsize=SMALL, pad=3)
+    axes.set_title(title, loc="left", fontsize=SMALLEST, pad=3)

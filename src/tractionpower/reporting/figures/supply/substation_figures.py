@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.facts.substation_loads import along_line
-from tractionpower.reporting.figures.base.style import BLUE, COLOURS, DASHES, INK, ORANGE, SKY, STYLE, new_figure
-from tractionpower.reporting.figures.supply.panels import PAGE, SMALL, head, legend_below, most_loaded, shortened
+from tractionpower.reporting.figures.base.style import BLUE, COLOURS, DASHES, INK, ORANGE, PAGE, SKY, SMALLEST, STYLE, new_figure
+from tractionpower.reporting.figures.supply.panels import head, legend_below, most_loaded, shortened
 from tractionpower.reporting.texts import number, tr
 
 Array = NDArray[Any]
@@ -62,9 +62,9 @@ def _draw_bars(axes: Axes, bars: dict[str, list[float]], names: list[str]) -> No
             continue
         drawn = axes.barh(place + 0.29 * (row - 1), np.nan_to_num(values), 0.27, color=colour, label=label)
         texts = [number(value, 2, bare=False) if np.isfinite(value) else "" for value in values]
-        axes.bar_label(drawn, texts, padding=2, fontsize=SMALL, color=INK)
-    axes.set_yticks(place, [shortened(name, MOST_LETTERS) for name in names], fontsize=SMALL)
-    axes.tick_params(labelsize=SMALL)
+        axes.bar_label(drawn, texts, padding=2, fontsize=SMALLEST, color=INK)
+    axes.set_yticks(place, [shortened(name, MOST_LETTERS) for name in names], fontsize=SMALLEST)
+    axes.tick_params(labelsize=SMALLEST)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.margins(x=0.17)
     axes.set_axisbelow(True)

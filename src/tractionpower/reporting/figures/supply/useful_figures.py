@@ -12,8 +12,8 @@ from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 
 from tractionpower.reporting.facts.run_data import RunData
-from tractionpower.reporting.figures.base.style import INK, STYLE, VERMILION, new_figure
-from tractionpower.reporting.figures.supply.panels import PAGE, SMALL, head, shortened
+from tractionpower.reporting.figures.base.style import INK, PAGE, SMALLEST, STYLE, VERMILION, new_figure
+from tractionpower.reporting.figures.supply.panels import head, shortened
 from tractionpower.reporting.texts import mark, number, tr
 
 DEFINITIONS = {
@@ -61,7 +61,7 @@ def useful_voltage_zones(data: RunData) -> Figure | None:
         _label_hours(panels[-1], hours)
         bar = figure.colorbar(mesh, ax=panels, location="bottom", shrink=0.8, aspect=45, pad=0.02)
         bar.set_label(tr("mean useful voltage [V]"), fontsize=8)
-        bar.ax.tick_params(labelsize=SMALL)
+        bar.ax.tick_params(labelsize=SMALLEST)
         more = tr(", the {shown} lowest of {every} zones", shown=len(zones), every=every) if len(zones) < every else ""
         held = tr("; marked red: below {volts} V", volts=number(limit)) if np.isfinite(limit) else ""
         head(figure, tr("{study}: mean useful voltage of the zones", study=data.title) + more + held)
@@ -101,12 +101,12 @@ def _draw(axes: Axes, volts: Any, zones: list[str], classes: Any, limit: float) 
     axes.axvline(volts.shape[1] - 1, color="white", linewidth=3.0)
     for row, column in np.argwhere(np.isfinite(volts)) if volts.shape[1] <= UPRIGHT_UP_TO else ():
         value = volts[row, column]
-        style: Any = {"color": text_colour(colours(norm(value))), "fontsize": SMALL, "ha": "center", "va": "center"}
+        style: Any = {"color": text_colour(colours(norm(value))), "fontsize": SMALLEST, "ha": "center", "va": "center"}
         style["rotation"] = 0 if volts.shape[1] <= NUMBERS_UP_TO else 90
         if value < limit:
             style["color"], style["bbox"] = "white", {"facecolor": VERMILION, "edgecolor": "none", "pad": 1.0}
         axes.text(column + 0.5, row + 0.5, number(value, 0), **style)
-    axes.set_yticks(np.arange(len(zones)) + 0.5, [shortened(zone, MOST_LETTERS) for zone in zones], fontsize=SMALL)
+    axes.set_yticks(np.arange(len(zones)) + 0.5, [shortened(zone, MOST_LETTERS) for zone in zones], fontsize=SMALLEST)
     axes.set_ylim(len(zones), 0)
     axes.tick_params(length=0)
     return mesh
@@ -122,5 +122,5 @@ def _label_hours(axes: Axes, hours: list[float]) -> None:
     step = max(1, -(-len(hours) // 26))
     ticks = [k + 0.5 for k in range(0, len(hours), step)]
     names = [f"{int(hours[k] // 3600):02d}" for k in range(0, len(hours), step)]
-    axes.set_xticks([*ticks, len(hours) + 0.5], [*names, tr("run")], fontsize=SMALL)
+    axes.set_xticks([*ticks, len(hours) + 0.5], [*names, tr("run")], fontsize=SMALLEST)
     axes.set_xlabel(tr("hour of the day that begins at [h]; the last column is the whole run"), color=INK, fontsize=8)

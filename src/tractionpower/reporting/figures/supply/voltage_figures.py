@@ -30,12 +30,14 @@ from tractionpower.reporting.figures.base.style import (
     GREY,
     INK,
     ORANGE,
+    PAGE,
+    SMALLEST,
     STYLE,
     VERMILION,
     new_figure,
 )
 from tractionpower.reporting.figures.supply.km_axis import name_devices, name_stations
-from tractionpower.reporting.figures.supply.panels import PAGE, SMALL, head, legend_below, once, shortened
+from tractionpower.reporting.figures.supply.panels import head, legend_below, once, shortened
 from tractionpower.reporting.texts import number, recorded, tr
 
 INCHES = PAGE - 1.15
@@ -83,7 +85,9 @@ def voltage_along_line(data: RunData) -> Figure | None:
                 _draw_fixed(axes, profile[profile["track"] == track], words, colour, dashes)
                 drawn += 1
             _finish(axes, data, profile, tracks)
-            axes.set_ylabel(tr("voltage between contact\nline and rail [V]") if len(lines) == 1 else _of_tracks(tracks), fontsize=8)
+            axes.set_ylabel(
+                tr("voltage between contact\nline and rail [V]") if len(lines) == 1 else _of_tracks(tracks), fontsize=8
+            )
             name_stations(axes, data.places.stations(tracks), INCHES)
         _mark_worst(panels, lines, data, profile)
         return _finished(figure, panels, data)
@@ -196,7 +200,7 @@ def _mark_worst(panels: Sequence[Axes], shown: Sequence[Sequence[str]], data: Ru
     axes.plot(km, volts, "v", color=INK, markersize=6, zorder=4)
     axes.annotate(
         text, (km, volts), (6 if left else -6, -9), textcoords="offset points", ha="left" if left else "right",
-        va="top", fontsize=SMALL, color=INK, zorder=5,
+        va="top", fontsize=SMALLEST, color=INK, zorder=5,
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85},
     )  # fmt: skip
 
@@ -221,7 +225,10 @@ def voltage_histogram(data: RunData) -> Figure | None:
         axes = figure.add_subplot()
         axes.set_axisbelow(True)
         below = np.zeros(len(edges) - 1)
-        for flags, colour, hatch, label in ((taking, BLUE, "", tr("taking current")), (~taking, GREEN, "////", tr("feeding back"))):
+        for flags, colour, hatch, label in (
+            (taking, BLUE, "", tr("taking current")),
+            (~taking, GREEN, "////", tr("feeding back")),
+        ):
             if flags.any():
                 share = 100.0 * np.histogram(volts[flags], edges)[0] / len(volts)
                 style: Any = {"color": colour, "edgecolor": "white", "hatch": hatch, "linewidth": 0.4}
@@ -245,13 +252,15 @@ def _draw_lines(axes: Axes, data: RunData, volts: Any) -> None:
         axes.axvline(value, color=GREY, linewidth=0.9, linestyle=(0, (5, 3)))
         axes.annotate(
             f"{shown} {number(value)} V", (value, 1.0), (-2, -2), xycoords=("data", "axes fraction"), textcoords="offset points",
-            rotation=90, ha="right", va="top", fontsize=SMALL, color=INK,
+            rotation=90, ha="right", va="top", fontsize=SMALLEST, color=INK,
         )  # fmt: skip
     lines = [*useful_voltages(data), (tr("lowest voltage"), float(volts.min()))]
     dashes: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (1, 1)), (0, (4, 1, 1, 1)), (0, (3, 3)))
     for row, (label, value) in enumerate(lines):
         colour = (VERMILION, ORANGE, INK)[row % 3]
-        axes.axvline(value, color=colour, linewidth=1.5, linestyle=dashes[row % len(dashes)], label=f"{label}: {number(value, 0)} V")
+        axes.axvline(
+            value, color=colour, linewidth=1.5, linestyle=dashes[row % len(dashes)], label=f"{label}: {number(value, 0)} V"
+        )
 
 
 def useful_voltages(data: RunData) -> list[tuple[str, float]]:
