@@ -125,6 +125,7 @@ class Page:
         self.styles = book.styles
         self.next = 1
         self._needed: dict[int, float] = {}
+        self._narrow: dict[int, float] = {}
         self._tables = 0
         self._last_printed: int | None = None
         self._set_up()
@@ -224,6 +225,8 @@ class Page:
     def finish(self) -> None:
         """Set the widths of the columns and the paper, when all is written."""
         sheet = self.sheet
+        for number, given in self._narrow.items():
+            self._needed[number] = given - PADDING
         width = sum(needed + PADDING for needed in self._needed.values())
         paper = self.book.report.paper
         if paper == "fit":
@@ -243,6 +246,10 @@ class Page:
         """Give the first columns at least these widths [characters]."""
         for number, width in enumerate(widths, 1):
             self._needed[number] = max(self._needed.get(number, 0.0), width)
+
+    def narrow(self, first: int, last: int, width: float) -> None:
+        """Give columns exactly this width [characters], whatever their headings need."""
+        self._narrow |= dict.fromkeys(range(first, last + 1), width)
 
     def _print_beginning(self, block: Block, rows: int) -> None:
         """Print the sheet down to some row of a table, and say so below the page."""

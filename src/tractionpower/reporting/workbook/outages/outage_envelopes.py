@@ -7,32 +7,54 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from openpyxl.utils import absolute_coordinate
 
+from tractionpower.model.limits import Limit
 from tractionpower.reporting.facts.device_words import KINDS, kind_order
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.facts.places import told
+from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.page import Block, Column
+from tractionpower.reporting.workbook.frame.formulas import Formula
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 from tractionpower.reporting.workbook.frame.plots import COLOURS, GREY, Line, draw, scatter
-from tractionpower.reporting.workbook.sizing.ratings import HOLDS, UNRATED, banner, colour_use, colour_word
-from tractionpower.studies.ratings.words import window_words
+from tractionpower.reporting.workbook.sizing.judging import (
+    HOLDS,
+    NO,
+    UNRATED,
+    YES,
+    at_most,
+    banner,
+    colour_red,
+    colour_use,
+    colour_word,
+    judged,
+    known,
+    limit_line,
+    sentence,
+    window_in_words,
+)
+from tractionpower.reporting.workbook.sizing.rated_cells import use_of
+from tractionpower.results.spells import TOLERANCE_V
+from tractionpower.studies.ratings.use import MOST_PERCENT
 
-BASE, WORST, KM = "nothing out [V]", "worst of all cases [V]", "place [km]"
-LIMIT = "U_min2 [V]"
-USE, BASE_USE = "utilisation in the worst case [%]", "with nothing out [%]"
+BASE, WORST, KM = mark("nothing out"), mark("worst of all cases"), mark("place [km]")
+LIMIT = mark("limit [V]")
+USE, BASE_USE = mark("utilisation in the worst case [%]"), mark("with nothing out [%]")
 
 _DEVICES = (
     Column("device", widest=34),
     Column("kind", widest=28),
-    Column(BASE_USE, "0.0"),
-    Column(USE, "0.0"),
-    Column(HOLDS, "beside"),
-    Column("worst case", widest=64),
+    Column(BASE_USE, "0.0", key="base"),
+    Column(USE, "0.0", key="use"),
+    Column("change", "0.0"),
+    Column(HOLDS, "beside", key="holds"),
+    Column("worst case", widest=50),
     Column("window that rules", "beside"),
-    Column("load in it [A]", "0"),
-    Column("permitted in it [A]", "0"),
+    Column("load in it [A]", "0", key="load"),
+    Column("permitted in it [A]", "0", key="permitted"),
     Column("highest current [A]", "0"),
-    Column("case of the highest current", "beside", 64),
+    Column("case of the highest current", "beside", 50),
 )
 
 
@@ -48,32 +70,59 @@ def _devices(book: Book, outages: Outages) -> None:
         return
     page = book.page("Device envelope", "Device envelope: the worst of all outages for every device")
     rated = rows[rows["utilisation_percent"].notna()]
-    over = rated[rated["met"].astype(str) == "no"]
     permitted = outages.scenario.sizing.utilisation_percent
-    if rated.empty:
-        banner(page, f"None of {len(rows)} devices has a rating", "doubt")
-    elif len(over):
-        banner(page, f"{len(over)} of {len(rated)} rated devices are beyond {permitted:g} % in some outage", "bad")
-    else:
-        banner(page, f"All {len(rated)} rated devices stay within {permitted:g} % in every case", "good")
+    head = page.next
+    page.next += 1  # for the banner
+    limit = limit_line(page, tr("Permitted utilisation"), "utilisation_percent", permitted, "%")
     page.note(
         "Utilisation: the highest root mean square of the current over the window that rules, of what the rating permits for it."
         " The worst case may be that with nothing out. Where ratings come from: workbook of `tractionpower size`, sheet Ratings."
     )
     kinds = rows["kind"].astype(str).map(kind_order).astype(int)
     ordered = rows.assign(_kind=kinds).sort_values(["_kind", "utilisation_percent"], ascending=[True, False], kind="stable")
-    block = page.table(_DEVICES, (_device_row(outages, row) for row in ordered.to_dict("records")), frozen=True)
-    for heading in (USE, BASE_USE):
-        colour_use(block, heading, permitted)
+    cells = (_device_row(outages, row, limit) for row in ordered.to_dict("records"))
+    block = page.table(_DEVICES, cells, frozen=True)
+    for key in ("use", "base"):
+        colour_use(block, key, limit)
     colour_word(block, HOLDS)
+    end, page.next = page.next, head
+    _banner(page, block, rated, len(rows))
+    page.next = end
 
 
-def _device_row(outages: Outages, row: dict[Any, Any]) -> tuple[Any, ...]:
+def _banner(page: Page, block: Block, rated: pd.DataFrame, devices: int) -> None:
+    """Say how many devices are overloaded in some outage."""
+    if rated.empty:
+        banner(page, tr("None of {devices} devices has a rating", devices=devices), "doubt")
+        return
+    over = int((rated["met"].astype(str) == "no").sum())
+    area = absolute_coordinate(block.cells("holds"))
+    count = f'COUNTIF({area},"{tr(NO)}")'
+    all_of = f"COUNT({absolute_coordinate(block.cells('use'))})"
+    text = sentence(
+        tr("{over} of {rated} rated devices are beyond what is permitted in some outage"),
+        over=(count, over),
+        rated=(all_of, len(rated)),
+    )
+    banner(page, text, "good", f"{count}>0")
+
+
+def _device_row(outages: Outages, row: dict[Any, Any], limit: str) -> tuple[Any, ...]:
     rated = bool(np.isfinite(row["utilisation_percent"]))
+    kind, load, permitted = str(row["kind"]), float(row["load_a"]), float(row["permitted_a"])
+    use: Any = None
+    change: Any = None
+    holds: Any = tr(UNRATED)
+    if rated:
+        value = use_of(load, permitted)
+        use = Formula("100*{load}/{permitted}", value) if permitted > 0.0 and value < MOST_PERCENT else value
+        change = Formula("{use}-{base}", value - row["base_percent"]) if known(row["base_percent"]) else None
+        word = NO if value > outages.scenario.sizing.utilisation_percent * (1.0 + 1e-9) else YES
+        holds = judged(at_most("use", limit), word, str(row["met"]))
     return (
-        row["device"], KINDS.get(str(row["kind"]), row["kind"]), row["base_percent"], row["utilisation_percent"],
-        str(row["met"]) or UNRATED, outages.told(row["case"]) if rated else "",
-        window_words(row["window_s"]) if np.isfinite(row["window_s"]) and rated else "", row["load_a"], row["permitted_a"],
+        row["device"], tr(KINDS.get(kind, kind)), row["base_percent"], use, change, holds,
+        outages.told(row["case"]) if rated else "",
+        window_in_words(row["window_s"]) if np.isfinite(row["window_s"]) and rated else "", load, permitted,
         row["peak_a"], outages.told(row["peak_case"]),
     )  # fmt: skip
 
@@ -84,6 +133,8 @@ def _along(book: Book, outages: Outages) -> None:
     if not len(rows):
         return
     page = book.page("Envelope", "Envelope along the line: the worst voltage and rail potential of all outages")
+    limit = outages.limit("u_min2") if (rows["quantity"] == "voltage").any() else None
+    cell = "" if limit is None else limit_line(page, tr("U_min2: lowest voltage"), "u_min2", limit.value, limit.unit)
     page.note(
         "Nothing out: at normal grid voltage. Voltage: the lowest of trains within 0.25 km and of fixed places. Rail potential:"
         " the greatest of either sign, against remote earth. The last column tells the case that is worst there."
@@ -97,13 +148,15 @@ def _along(book: Book, outages: Outages) -> None:
     for (words, quantity, own), row in zip(groups, kept, strict=True):
         page.new_page()
         page.section(words)
-        block = page.table(*_places(outages, quantity, own))
+        block = page.table(*_places(outages, quantity, own, (cell, limit)))
+        if "limit" in block.keys:
+            colour_red(block, block.cells("worst"), f"<{cell}-{TOLERANCE_V:g}")
         page.chart(_chart(words, quantity, block, own), row)
 
 
 def _groups(outages: Outages, rows: pd.DataFrame) -> Iterator[tuple[str, str, pd.DataFrame]]:
     """Yield what is drawn together: title, quantity, rows of a track or of the rails of tracks along the line."""
-    for quantity, words in (("voltage", "Lowest voltage"), ("rail_potential", "Greatest rail potential")):
+    for quantity, words in (("voltage", tr("Lowest voltage")), ("rail_potential", tr("Greatest rail potential"))):
         own = rows[rows["quantity"] == quantity]
         for line in outages.places.by_line(own["track"].astype(str).unique()):
             for track in line:
@@ -111,22 +164,38 @@ def _groups(outages: Outages, rows: pd.DataFrame) -> Iterator[tuple[str, str, pd
                 yield f"{words}, {told(track.split() if ' ' in track else [track])}", quantity, mine
 
 
-def _places(outages: Outages, quantity: str, rows: pd.DataFrame) -> tuple[list[Column], Iterator[tuple[Any, ...]]]:
-    limit = outages.limit("u_min2") if quantity == "voltage" else None
-    number = "0" if quantity == "voltage" else "0.0"
-    columns = [Column(KM, "0.000"), Column(BASE, number), Column(WORST, number), *([Column(LIMIT, "0")] if limit else [])]
-    columns.append(Column("worst case", "beside", 60))
-    more = () if limit is None else (limit.value,)
-    cells = ((row["km"], row["base_v"], row["worst_v"], *more, outages.told(row["case"])) for row in rows.to_dict("records"))
-    return columns, cells
+def _places(
+    outages: Outages, quantity: str, rows: pd.DataFrame, limit: tuple[str, Limit | None]
+) -> tuple[list[Column], Iterator[tuple[Any, ...]]]:
+    """Return columns and rows of a track; `limit`: the address of the lowest voltage, and what it is."""
+    cell, least = limit if quantity == "voltage" else ("", None)
+    style = "0" if quantity == "voltage" else "0.0"
+    columns = [
+        Column(KM, "0.000", key="km"),
+        Column(tr("nothing out [V]"), style, key="base"),
+        Column(tr("worst of all cases [V]"), style, key="worst"),
+        Column(tr("change [V]"), style, key="change"),
+        *([Column(LIMIT, "0", key="limit")] if least else []),
+        Column("worst case", "beside", 60, key="case"),
+    ]
+    more = () if least is None else (Formula(cell, least.value),)
+    return columns, (
+        (row["km"], row["base_v"], row["worst_v"], _change(row), *more, outages.told(row["case"]))
+        for row in rows.to_dict("records")
+    )
+
+
+def _change(row: dict[Any, Any]) -> Formula | None:
+    base, worst = float(row["base_v"]), float(row["worst_v"])
+    return Formula("{worst}-{base}", worst - base) if np.isfinite(base) else None
 
 
 def _chart(words: str, quantity: str, block: Block, rows: pd.DataFrame) -> Any:
-    chart = scatter(words, KM, "voltage [V]" if quantity == "voltage" else "rail potential [V]")
-    for name, heading, colour in (("nothing out", BASE, COLOURS[0]), ("worst of all cases", WORST, COLOURS[1])):
-        draw(chart, block, Line(name, KM, heading, block.first, block.last, colour))
-    if LIMIT in block.headings:
-        draw(chart, block, Line("U_min2", KM, LIMIT, block.first, block.last, GREY, "dash"))
+    chart = scatter(words, tr(KM), tr("voltage [V]") if quantity == "voltage" else tr("rail potential [V]"))
+    for name, key, colour in ((tr(BASE), "base", COLOURS[0]), (tr(WORST), "worst", COLOURS[1])):
+        draw(chart, block, Line(name, "km", key, block.first, block.last, colour))
+    if "limit" in block.keys:
+        draw(chart, block, Line("U_min2", "km", "limit", block.first, block.last, GREY, "dash"))
         chart.y_axis.scaling.min = (float(rows["worst_v"].min()) - 100.0) // 200.0 * 200.0
     low, high = float(rows["km"].min()), float(rows["km"].max())
     chart.x_axis.scaling.min, chart.x_axis.scaling.max = low // 10.0 * 10.0, -(-high // 10.0) * 10.0

@@ -1,191 +1,208 @@
-"""The sheets of outages: what is out, what becomes of voltages, devices and trains, grid voltages side by side."""
+"""The sheet of outages: what is out, whether it holds, and the worst of its cases, by formulas on the sheets of all cases."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-import pandas as pd
-from openpyxl.formatting.rule import CellIsRule, FormulaRule
-
-from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages, worst
+from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages
+from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.cells import RED_FILL, fill
-from tractionpower.reporting.workbook.frame.page import Block, Column
-from tractionpower.reporting.workbook.sizing.ratings import HOLDS, colour_use, colour_word
+from tractionpower.reporting.workbook.frame.formulas import Formula
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page
+from tractionpower.reporting.workbook.outages import outage_cases, outage_heat
+from tractionpower.reporting.workbook.outages.outage_cases import GRID_WORDS, SHEETS, figure_of, range_name
+from tractionpower.reporting.workbook.sizing.judging import (
+    HOLDS,
+    NO,
+    YES,
+    banner,
+    colour_red,
+    colour_use,
+    colour_word,
+    judged,
+    known,
+    limit_line,
+    sentence,
+)
 
 Case = Mapping[str, Any]
-USE = "highest utilisation [%]"
-LOWEST, ZONE, TRAIN = (
-    "lowest voltage [V]",
-    "lowest mean useful voltage of a zone [V]",
-    "lowest mean useful voltage of a train [V]",
+
+BANNER = "outages_banner"
+"""Name of the cell that says how many outages fail."""
+
+_MIN, _MAX = "MIN", "MAX"
+_FIGURES = (
+    (mark("lowest mean useful voltage of a zone [V]"), "0", "useful_zone_v", _MIN),
+    (mark("lowest mean useful voltage of a train [V]"), "0", "useful_train_v", _MIN),
+    (mark("highest utilisation [%]"), "0.0", "utilisation_percent", _MAX),
+    (mark("devices beyond their rating"), "0", "overloaded", _MAX),
+    (mark("late trains"), "0", "late_trains", _MAX),
+    (mark("stuck trains"), "0", "stuck_trains", _MAX),
+    (mark("trips"), "0", "trips", _MAX),
+    (mark("greatest rail potential [V]"), "0", "rail_potential_v", _MAX),
 )
+"""Columns: heading, format, figure and which of its values over the grid voltages is the worst."""
+
+
+@dataclass(frozen=True)
+class _Group:
+    """An outage: its cases by grid voltage, and the first and the last of their rows among all cases."""
+
+    first: Case
+    cases: Mapping[str, Case]
+    rows: tuple[int, int]
 
 
 def add(book: Book, outages: Outages) -> None:
-    """Add the sheet of outages and that of all cases."""
+    """Add the sheet of outages, that of heat, and those of all cases."""
     page = book.page("Outages", "Outages: what is out, and what becomes of voltages, devices and trains")
+    head = page.next
+    page.next += 1  # for the banner
+    limits = {
+        check.limit: limit_line(page, tr(words), check.limit, check.value, check.unit)
+        for check, words in ((check, outage_cases.LIMIT_WORDS.get(check.limit, "")) for check in _limits(outages))
+    }
     page.note(
-        "A row for each outage, with the worst of all grid voltages where none is named; grouped by kind, along the line. Lowest"
-        " voltage: at trains, loads and cross-sections that are fed. Added delay: how much later than without the outage, at the"
-        " same grid voltage, the most delayed train is at a timed call; at least that of stuck trains."
-        " An outage holds if no limit of the voltage, no rating and no tolerance of lateness is"
-        " passed and all its cases were computed; trips of breakers are told, not judged."
+        "A row for each outage, with the worst of all grid voltages where none is named; grouped by kind, along the line. An"
+        " outage holds if no limit of the voltage, no rating and no tolerance of lateness is passed and all its cases were"
+        " computed; trips of breakers count as failures. Sheets Outage voltages, Outage loads and Outage trains have every"
+        " grid voltage, What fails the reasons in words."
     )
-    rows = [_row(outages, first, cases) for first, cases in outages.groups()]
-    block = page.table(*_filled(_columns(outages), rows), frozen=True)
+    groups = _groups(outages)
+    columns = _columns(outages)
+    block = page.table(columns, [_row(outages, number, group, columns) for number, group in enumerate(groups)], frozen=True)
     colour_word(block, HOLDS)
-    _colour(block, outages)
-    _every(book, outages)
+    _colour(block, limits, outages)
+    end, page.next = page.next, head
+    _banner(page, outages, block, groups)
+    page.next = end
+    outage_heat.add(book, outages)
+    outage_cases.add(book, outages)
 
 
-def _filled(columns: Sequence[Column], rows: Sequence[Sequence[Any]]) -> tuple[list[Column], list[list[Any]]]:
-    """Return columns and rows without the columns that are empty in every row: studies without ratings have many."""
-    kept = [k for k in range(len(columns)) if k < KEPT or any(row[k] is not None and row[k] != "" for row in rows)]
-    return [columns[k] for k in kept], [[row[k] for k in kept] for row in rows]
+def _limits(outages: Outages) -> list[Any]:
+    """Return one check for each limit that columns of this sheet are coloured by."""
+    figures = ("lowest_voltage_v", "useful_zone_v", "utilisation_percent")
+    return [check for figure in figures for check in outages.checks if check.figure == figure and _has(outages, figure)]
 
 
-KEPT = 4
-"""Columns that stay even where they are empty."""
+def _has(outages: Outages, figure: str) -> bool:
+    return any(figure_of(case, figure) is not None for case in outages.by_id.values())
+
+
+def _groups(outages: Outages) -> list[_Group]:
+    order = {case: number for number, case in enumerate(outages.by_id, 1)}
+    found = []
+    for first, cases in outages.groups():
+        rows = [order[case["case"]] for case in cases.values()]
+        found.append(_Group(first, cases, (min(rows), max(rows))))
+    return found
 
 
 def _columns(outages: Outages) -> list[Column]:
-    grids = [f", {grid} grid" for grid in outages.grids] if len(outages.grids) > 1 else [""]
+    grids = [
+        Column(tr("lowest voltage, {grid} grid [V]", grid=tr(GRID_WORDS.get(grid, grid))), "0", key=f"volts_{grid}")
+        for grid in outages.grids
+    ]
+    if len(grids) == 1:
+        grids = [Column("lowest voltage [V]", "0", key=f"volts_{outages.grids[0]}")]
     return [
-        Column("what is out", widest=48),
-        Column("kind", widest=20),
-        Column(HOLDS, "beside"),
-        Column("why, and at which grid voltage", widest=50),
-        *(Column(f"{LOWEST}{grid}", "0") for grid in grids),
-        Column("on track", "beside"),
-        Column("at [km]", "0.0"),
-        Column("at", "time"),
-        Column(ZONE, "0"),
-        Column("zone", "beside", 26),
-        Column(TRAIN, "0"),
-        Column("train", "beside", 18),
-        *(Column(f"{USE}{grid}", "0.0") for grid in grids),
-        Column("device", "beside", 34),
-        *(Column(f"late trains{grid}", "0") for grid in grids),
-        Column("added delay, at most [s]", "0"),
-        Column("train that is delayed most", "beside", 18),
-        Column("trips", "0"),
-        Column("greatest rail potential [V]", "0"),
+        Column("no.", "0", key="number"),
+        Column("what is out", widest=40, key="words"),
+        Column("kind", widest=20, key="kind"),
+        Column(HOLDS, "beside", key=HOLDS),
+        Column("why, and at which grid voltage", widest=46, key="why"),
+        *grids,
+        *(Column(words, style, key=figure) for words, style, figure, _ in _FIGURES if _has(outages, figure)),
+        Column("added delay, at most [s]", "0", key="added"),
+        Column("train that is delayed most", "beside", 18, key="train"),
     ]
 
 
-def _row(outages: Outages, first: Case, cases: Mapping[str, Case]) -> list[Any]:
-    computed = [case for case in cases.values() if case["status"] in COMPUTED]
-    low = worst(computed, "lowest_voltage_v", lowest=True) or {}
-    zone, train = (worst(computed, f"useful_{of}_v", lowest=True) or {} for of in ("zone", "train"))
-    use = worst(computed, "utilisation_percent") or {}
-    rail, trips = worst(computed, "rail_potential_v") or {}, worst(computed, "trips") or {}
+def _row(outages: Outages, number: int, group: _Group, columns: Sequence[Column]) -> list[Any]:
+    first, (low, high) = group.first, group.rows
+    by_grid = {case["grid"]: row for row, case in enumerate(outages.by_id.values(), 1) if low <= row <= high}
+    computed = [case for case in group.cases.values() if case["status"] in COMPUTED]
+    cells: dict[str, Any] = {
+        "number": number or None, "words": first["words"], "kind": tr(KINDS_WORDS.get(first["kind"], first["kind"])),
+        "why": _why(outages, group.cases), HOLDS: _holds(outages, group),
+    }  # fmt: skip
+    for grid in outages.grids:
+        case = group.cases.get(grid)
+        value = None if case is None else figure_of(case, "lowest_voltage_v")
+        name = range_name("lowest_voltage_v")
+        cells[f"volts_{grid}"] = Formula(f"INDEX({{{name}}},{by_grid[grid]})", value) if known(value) else None
+    for _, _, figure, worst in _FIGURES:
+        values = [value for case in computed if known(value := figure_of(case, figure))]
+        found = (min if worst == _MIN else max)(values, default=None)
+        cells[figure] = None if found is None else Formula(f"{worst}({_span(figure, group.rows)})", found)
     added = max((outages.added_s[case["case"]] for case in computed if case["case"] in outages.added_s), default=(None, ""))
-    by_grid = [cases.get(grid) if cases.get(grid) in computed else None for grid in outages.grids]
-    return [
-        first["words"],
-        KINDS_WORDS.get(first["kind"], first["kind"]),
-        *_verdict(outages, cases),
-        *_of_grids(by_grid, "lowest_voltage_v"),
-        low.get("lowest_voltage_track"), low.get("lowest_voltage_km"), low.get("lowest_voltage_s"),
-        zone.get("useful_zone_v"), zone.get("useful_zone"), train.get("useful_train_v"), train.get("useful_train"),
-        *_of_grids(by_grid, "utilisation_percent"),
-        use.get("utilisation_device"),
-        *_of_grids(by_grid, "late_trains"),
-        *added,
-        trips.get("trips"), rail.get("rail_potential_v"),
-    ]  # fmt: skip
+    cells["added"], cells["train"] = added
+    return [cells[column.key] for column in columns]
 
 
-def _of_grids(cases: Sequence[Case | None], name: str) -> list[Any]:
-    return [None if case is None else case[name] for case in cases]
+def _span(figure: str, rows: tuple[int, int]) -> str:
+    """Return the cells of a figure of the cases of an outage."""
+    name = f"{{{range_name(figure)}}}"
+    return f"INDEX({name},{rows[0]}):INDEX({name},{rows[1]})"
 
 
-def _verdict(outages: Outages, cases: Mapping[str, Case]) -> tuple[str, str]:
-    """Return whether an outage holds at all its grid voltages, and what it fails at."""
+def _holds(outages: Outages, group: _Group) -> Formula | str:
+    """Return whether all cases of an outage hold on all sheets of cases."""
+    sheets = [sheet.key for sheet in SHEETS if _is_judged(outages, sheet)]
+    size = group.rows[1] - group.rows[0] + 1
+    counts = "+".join(f'COUNTIF({_span(f"{key}_hold", group.rows)},"{tr(YES)}")' for key in sheets)
+    word = NO if any(map(outages.failures, group.cases.values())) else YES
+    if size != len(group.cases) or not sheets:
+        return tr(word)
+    return judged(f'IF({counts}={size * len(sheets)},"{tr(YES)}","{tr(NO)}")', word, word)
+
+
+def _is_judged(outages: Outages, sheet: Any) -> bool:
+    figures = {column.key for column in sheet.columns if _has(outages, column.key)}
+    return any(check.figure in figures for check in outages.checks)
+
+
+def _why(outages: Outages, cases: Mapping[str, Case]) -> str:
+    """Return what an outage fails at, and at which grid voltages."""
     found: dict[str, list[str]] = {}
     for grid, case in cases.items():
         for failure in outages.failures(case):
             grids = found.setdefault(failure.short, [])
             grids += [grid] if grid not in grids else []
-    if not found:
-        return "yes", ""
     if len(outages.grids) == 1:
-        return "no", "; ".join(found)
+        return "; ".join(found)
     every = [grid for grid in outages.grids if grid in cases]
-    return "no", "; ".join(f"{what} ({'all' if grids == every else ', '.join(grids)})" for what, grids in found.items())
-
-
-def _colour(block: Block, outages: Outages) -> None:
-    floors = {check.figure: check.value for check in outages.checks if check.is_floor}
-    figures = {LOWEST: "lowest_voltage_v", ZONE: "useful_zone_v", TRAIN: "useful_train_v"}
-    for heading in block.headings:
-        figure = next((name for words, name in figures.items() if heading.startswith(words)), None)
-        if heading.startswith(USE):
-            colour_use(block, heading, outages.scenario.sizing.utilisation_percent)
-        elif figure in floors:
-            _red(block, heading, f"<{floors[figure]!r}")
-        elif heading.startswith(("late trains", "stuck", "trips", "devices beyond")):
-            _red(block, heading, ">0")
-
-
-def _red(block: Block, heading: str, test: str) -> None:
-    area = block.cells(heading)
-    first = area.split(":")[0]
-    rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{first}{test})"], fill=fill(RED_FILL))
-    block.sheet.conditional_formatting.add(area, rule)
-
-
-_CASES: tuple[tuple[Column, str], ...] = (
-    (Column("what is out", widest=48), "words"),
-    (Column("grid voltage", "beside"), "grid"),
-    (Column("status", "beside"), "status"),
-    (Column("reason", widest=50), "reason"),
-    (Column(LOWEST, "0"), "lowest_voltage_v"),
-    (Column("on track", "beside"), "lowest_voltage_track"),
-    (Column("at [km]", "0.0"), "lowest_voltage_km"),
-    (Column("at", "time"), "lowest_voltage_s"),
-    (Column("highest voltage [V]", "0"), "highest_voltage_v"),
-    (Column(ZONE, "0"), "useful_zone_v"),
-    (Column(TRAIN, "0"), "useful_train_v"),
-    (Column(USE, "0.0"), "utilisation_percent"),
-    (Column("device", "beside", 34), "utilisation_device"),
-    (Column("devices beyond their rating", "0"), "overloaded"),
-    (Column("late trains", "0"), "late_trains"),
-    (Column("latest [s]", "0"), "worst_late_s"),
-    (Column("train", "beside", 18), "worst_late_train"),
-    (Column("stuck trains", "0"), "stuck_trains"),
-    (Column("trips", "0"), "trips"),
-    (Column("greatest rail potential [V]", "0"), "rail_potential_v"),
-    (Column("energy of the substations [kWh]", "0"), "energy_kwh"),
-    (Column("heat in lines [kWh]", "0"), "line_loss_kwh"),
-    (Column("highest demand of 15 min [kW]", "0"), "highest_demand_kw"),
-    (Column("case", "beside", 48), "case"),
-)
-
-
-def _every(book: Book, outages: Outages) -> None:
-    page = book.page("All cases", "All cases: every outage at every grid voltage")
-    page.note(
-        "`tractionpower run STUDY` with the changes of table case_changes repeats a case with all its tables. A case that failed"
-        " or was refused has no figures. Latest: at least that where trains are stuck at the end."
+    words = {grid: tr(GRID_WORDS.get(grid, grid)) for grid in every}
+    return "; ".join(
+        f"{what} ({tr('all') if grids == every else ', '.join(words[g] for g in grids)})" for what, grids in found.items()
     )
-    counts = {"overloaded", "late_trains", "stuck_trains", "trips"}
-    rows = [
-        [None if name in counts and row["status"] not in COMPUTED else _plain(row[name]) for _, name in _CASES]
-        for row in outages.by_id.values()
-    ]
-    block = page.table(*_filled([column for column, _ in _CASES], rows), frozen=True)
-    _colour_status(block)
-    _colour(block, outages)
 
 
-def _colour_status(block: Block) -> None:
-    for word in ("failed", "refused", "flagged"):
-        rule = CellIsRule(operator="equal", formula=[f'"{word}"'], fill=fill(RED_FILL))
-        block.sheet.conditional_formatting.add(block.cells("status"), rule)
+def _colour(block: Block, limits: Mapping[str, str], outages: Outages) -> None:
+    floors = {check.figure: check for check in outages.checks if check.is_floor and check.limit in limits}
+    for key in block.keys:
+        figure = "lowest_voltage_v" if key.startswith("volts_") else key
+        if key == "utilisation_percent" and key in limits:
+            colour_use(block, key, limits[key])
+        elif figure in floors:
+            check = floors[figure]
+            colour_red(block, block.cells(key), f"<{limits[check.limit]}-{check.tolerance:g}")
+        elif key in ("late_trains", "stuck_trains", "trips", "overloaded"):
+            colour_red(block, block.cells(key), ">0")
 
 
-def _plain(value: Any) -> Any:
-    return None if value is None or value is pd.NA else value
+def _banner(page: Page, outages: Outages, block: Block, groups: Sequence[_Group]) -> None:
+    """Say how many outages fail; the first rows of the table are those with nothing out."""
+    base = sum(group.first["kind"] == "base" for group in groups)
+    many = len(groups) - base
+    if not many:
+        banner(page, tr("No outage was looked at"), "doubt", name=BANNER)
+        return
+    failing = sum(any(map(outages.failures, group.cases.values())) for group in groups[base:])
+    area = f"$D${block.first + base}:$D${block.last}"
+    count = f'COUNTIF({area},"{tr(NO)}")'
+    text = sentence(tr("{failing} of {all} outages fail"), failing=(count, failing), all=(str(many), many))
+    banner(page, text, "good", f"{count}>0", BANNER)

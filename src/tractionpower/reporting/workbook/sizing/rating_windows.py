@@ -65,9 +65,7 @@ def _device(row: dict[Any, Any]) -> dict[str, Any]:
 def _loads(book: Book, rows: pd.DataFrame) -> None:
     """Add a row for each device and a column for each window."""
     page = book.page("Loads by window", "Loads by window: the highest root mean square of the current over every window")
-    page.note(
-        "Highest sliding root mean square of the current of every device [A]; none where the run is too short."
-    )
+    page.note("Highest sliding root mean square of the current of every device [A]; none where the run is too short.")
     windows = sorted(rows["window_s"].unique(), key=lambda window: (window == 0.0, window))
     columns = (
         Column("device", widest=34),

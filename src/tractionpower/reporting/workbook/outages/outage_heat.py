@@ -1,0 +1,102 @@
+"""The sheet of heat: the utilisation of every device in every outage, with a colour scale."""
+
+from __future__ import annotations
+
+from copy import copy
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from openpyxl.formatting.rule import ColorScaleRule, FormulaRule
+from openpyxl.styles import Font
+from openpyxl.utils import get_column_letter
+
+from tractionpower.reporting.facts.device_words import KINDS, kind_order
+from tractionpower.reporting.facts.outages import Outages
+from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
+from tractionpower.reporting.texts import tr
+from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.formulas import Formula
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page
+from tractionpower.reporting.workbook.sizing.judging import limit_line
+
+MOST_DEVICES, MOST_OUTAGES = 70, 60
+"""Rows and columns; with more, those with the highest utilisation are shown."""
+
+WIDTH = 5.0
+"""Width of the column of an outage [characters]."""
+
+_LOW, _MID, _HIGH = "FFFFFF", "FFE08A", "D55E00"
+_POINTS = 5.2
+"""Height of a rotated character [pt]."""
+
+
+def add(book: Book, outages: Outages) -> None:
+    """Add the sheet, if devices have ratings."""
+    rows = outages.table("case_devices")
+    rows = rows[rows["utilisation_percent"].notna()] if len(rows) else rows
+    if not len(rows):
+        return
+    wide, kinds = _wide(outages, rows)
+    page = book.page("Outage heat map", "Outage heat map: utilisation of the devices in every outage [%]")
+    limit = limit_line(page, tr("Permitted utilisation"), "utilisation_percent", outages.scenario.sizing.utilisation_percent, "%")
+    page.note(
+        tr(
+            "Highest utilisation of all grid voltages. Amber around {tight} % of what is permitted, red and bold beyond it. The"
+            " {devices} devices and {outages} outages with the highest utilisation at most; table case_devices has all.",
+            tight=f"{TIGHT_PERCENT:g}", devices=MOST_DEVICES, outages=MOST_OUTAGES,
+        )
+    )  # fmt: skip
+    last = f"case_{len(wide.columns) - 1}"
+    columns = (
+        Column("device", widest=30, key="device"),
+        Column("kind", widest=24, key="kind"),
+        Column("highest [%]", "0", key="most"),
+        *(Column(str(words), "0", key=f"case_{k}") for k, words in enumerate(wide.columns)),
+    )
+    cells = []
+    for at, (device, values) in enumerate(zip(wide.index, wide.to_numpy(float), strict=True), page.next + 1):
+        known = [float(value) for value in values if np.isfinite(value)]
+        most = Formula(f"MAX(D{at}:{get_column_letter(3 + len(values))}{at})", max(known)) if known else None
+        cells.append((device, tr(KINDS.get(kinds[device], kinds[device])), most, *values))
+    block = page.table(columns, cells, frozen=True)
+    page.sheet.freeze_panes = f"D{block.first}"
+    _turn(page, block)
+    _colour(block, f"{block.cell('most', block.first)}:{block.cell(last, block.last)}", limit)
+    page.narrow(4, 3 + len(wide.columns), WIDTH)
+
+
+def _wide(outages: Outages, rows: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
+    """Return the utilisation by device and by what is out, the worst of all grid voltages; and the kinds of the devices."""
+    words = {case: row["words"] for case, row in outages.by_id.items()}
+    rows = rows.assign(device=rows["device"].astype(str), kind=rows["kind"].astype(str), what=rows["case"].astype(str).map(words))
+    kinds = dict(zip(rows["device"], rows["kind"], strict=True))
+    wide = rows.pivot_table(index="device", columns="what", values="utilisation_percent", aggfunc="max", sort=False)
+    order = [name for name in dict.fromkeys(words.values()) if name in wide.columns]
+    worst = set(wide.max().sort_values(ascending=False, kind="stable").index[:MOST_OUTAGES])
+    devices = wide.max(axis=1).sort_values(ascending=False, kind="stable").index[:MOST_DEVICES]
+    shown = sorted(devices, key=lambda device: kind_order(kinds[device]))
+    return wide.loc[shown, [name for name in order if name in worst]], kinds
+
+
+def _turn(page: Page, block: Block) -> None:
+    """Let the headings of outages stand upright."""
+    row, longest = block.first - 1, 0
+    for column in range(4, len(block.headings) + 1):
+        cell = page.sheet.cell(row, column)
+        alignment: Any = copy(cell.alignment)
+        alignment.textRotation, alignment.vertical = 90, "bottom"
+        cell.alignment = alignment
+        longest = max(longest, len(str(cell.value)))
+    page.sheet.row_dimensions[row].height = min(max(60.0, longest * _POINTS + 14.0), 400.0)
+
+
+def _colour(block: Block, area: str, limit: str) -> None:
+    first = area.split(":", maxsplit=1)[0]
+    rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{first}>{limit})"], font=Font(bold=True))
+    block.sheet.conditional_formatting.add(area, rule)
+    scale = ColorScaleRule(
+        start_type="num", start_value=0, start_color=_LOW, mid_type="formula", mid_value=f"{TIGHT_PERCENT / 100.0:g}*{limit}",
+        mid_color=_MID, end_type="formula", end_value=f"1.2*{limit}", end_color=_HIGH,
+    )  # fmt: skip
+    block.sheet.conditional_formatting.add(area, scale)
