@@ -1,29 +1,46 @@
-"""The sheet of feasibility: the verdict on the timetable, and on each train."""
+"""The sheet of feasibility: the verdict on the timetable, and on each train, by formulas on the tolerance."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
 from tractionpower.reporting.figures.delays.delay_styles import cause_in_words
+from tractionpower.reporting.texts import mark, number, recorded, tr
+from tractionpower.reporting.workbook.common.acceptance import Accepted
+from tractionpower.reporting.workbook.feasibility.sentences import live, sentence
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill, put
+from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill
+from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Column, Page
 
 VERDICT, LEFT, LATE = "verdict", "reserve left [s]", "late at worst [s]"
 
+FEASIBLE, INFEASIBLE = mark("feasible"), mark("infeasible")
+NOT_FINISHED, NOT_JUDGED = mark("not finished"), mark("not judged")
+
+LIMIT = "limit_tolerance_s"
+"""Name of the cell that holds the tolerance."""
+
+COUNT, RESERVE = "feasibility_late_trains", "feasibility_reserve_left_s"
+"""Names of the cells that count the trains that are late or not there, and hold the least reserve."""
+
+LATE_RANGE = "feasibility_late_s"
+
 _COLUMNS = (
-    Column("train", widest=24),
-    Column(VERDICT),
-    Column(LATE, "0.0"),
-    Column("where it is latest", "beside", 22),
-    Column("main cause", widest=18),
-    Column("why", widest=46),
-    Column(LEFT, "0.0"),
-    Column("where the reserve is least", "beside", 24),
+    Column("train", widest=18),
+    Column(VERDICT, widest=12, key="verdict"),
+    Column(LATE, "0.0", key="late"),
+    Column("where it is latest", "beside", 16),
+    Column("main cause", widest=14),
+    Column("why", widest=44),
+    Column(LEFT, "0.0", key="left"),
+    Column("where the reserve is least", "beside", 18),
     Column("lost to low voltage [s]", "0.0"),
-    Column("most of it in the area of", "beside", 20),
+    Column("most of it in the area of", "beside", 14),
     Column("shortest running time [h:min:s]", "time"),
     Column("quality index (running-time ratio)", "0.000"),
     Column("mean useful voltage, weighted by current [V]", "0"),
@@ -33,6 +50,13 @@ _COLUMNS = (
 TIGHT_S = 10.0
 """A reserve that is smaller shows amber [s]."""
 
+_LATE_TRAINS = mark("Infeasible: {late} of {all} trains late or not there")
+_NONE_LATE = mark("Feasible: none of {all} trains is late")
+_RESERVE = mark("; {seconds} s of reserve left at the tightest place")
+_NO_RESERVE = mark("; no reserve is known")
+_MISSING = mark("; {seconds} s are missing at the tightest place, which is within the tolerance of {tolerance} s")
+_WORST = mark(". Worst: train {train}, {why}")
+
 
 def add(book: Book) -> None:
     """Add the sheet, if the run was judged."""
@@ -40,41 +64,111 @@ def add(book: Book) -> None:
     if told is None:
         return
     page = book.page("Feasibility", "Is the timetable feasible on this supply?")
-    sentence, style = verdict_in_words(told)
-    _banner(page, sentence, style)
+    _banner(page, *verdict_in_words(told))
     page.note(
-        f"A train is late if a timed arrival, departure or passing is more than {told['tolerance_s']:g} s after its planned time."
-        " Reserve left: by how much a train could come earlier than planned, driven flat out on the voltages of the run;"
-        " negative: so much is missing. Quality index: running time on the voltages of the run by that at nominal voltage."
-        " Trains do not see each other; what one loses does not hold up another."
+        "A train is late if a timed arrival, departure or passing is later than planned by more than the tolerance, which can be"
+        " edited on sheet Acceptance. Reserve left: by how much a train could come earlier than planned, driven flat out on the"
+        " voltages of the run; negative: so much is missing. Quality index: running time on the voltages of the run by that at"
+        " nominal voltage. Trains do not see each other; what one loses does not hold up another."
     )
-    block = page.table(_COLUMNS, map(_row, _ordered(told["trains"], book)), frozen=True)
-    _colour(block, float(told["tolerance_s"]))
+    trains = _ordered(told["trains"], book)
+    top = page.next
+    page.next += 5
+    tolerance = float(told["tolerance_s"])
+    block = page.table(_COLUMNS, (_row(train, tolerance) for train in trains), frozen=True)
+    book.define("feasibility_verdicts", page, block.cells("verdict"))
+    book.define(LATE_RANGE, page, block.cells("late"))
+    book.define("feasibility_reserves_s", page, block.cells("left"))
+    _counts(book, page, top, (told, trains))
+    _colour(block)
+    _tell_acceptance(book, told, trains)
 
 
-def verdict_in_words(told: dict[str, Any]) -> tuple[str, str]:
-    """Return the verdict on a timetable in a sentence, and the style that suits it."""
+def verdict_in_words(told: dict[str, Any]) -> tuple[Formula | str, str]:
+    """Return the verdict on a timetable in a sentence that follows the tolerance, and the style that suits it now."""
     trains, late = len(told["trains"]), told["late_trains"]
     if told["verdict"] == "not judged":
-        return f"Not judged: none of {trains} trains comes to a call with a planned time within the time that counts", "doubt"
+        words = tr("Not judged: none of {all} trains comes to a call with a planned time within the time that counts", all=trains)
+        return words, "doubt"
+    good, more = tr(_NONE_LATE, all=trains), '""'
+    words = live(_LATE_TRAINS, {"late": f"{{{COUNT}}}"}, all=trains)
     if told["verdict"] == "feasible":
-        reserve = told.get("reserve_left_s")
-        words = "no reserve is known" if reserve is None else f"{reserve:.0f} s of reserve left at the tightest place"
-        if reserve is not None and reserve < 0.0:
-            words = (
-                f"{-reserve:.1f} s are missing at the tightest place, which is within the tolerance of {told['tolerance_s']:g} s"
-            )
-        return f"Feasible: none of {trains} trains is late; {words}", "good"
-    first = told.get("first")
-    worst = f". Worst: train {first['train']}, {first['why']}" if first else ""
-    return f"Infeasible: {late} of {trains} trains late or not there{worst}", "bad"
+        tail, more = _reserve(told)
+        shown = good + tail
+    else:
+        first = told.get("first")
+        worst = tr(_WORST, train=first["train"], why=recorded(str(first["why"]))) if first else ""
+        shown = tr(_LATE_TRAINS, late=late, all=trains) + worst
+        words += f"&{sentence(worst, {})}"
+    formula = f"IF({{{COUNT}}}>0,{words},{sentence(good, {})}&{more})"
+    return Formula(formula, shown), "good" if told["verdict"] == "feasible" else "bad"
 
 
-def _banner(page: Page, text: str, style: str) -> None:
-    put(page.sheet, page.next, 1, text, page.styles[f"big {style}"])
+def _reserve(told: dict[str, Any]) -> tuple[str, str]:
+    """Return what is told of the reserve of a timetable that holds: as a text, and as a part of a formula."""
+    reserve = told.get("reserve_left_s")
+    if reserve is None:
+        words = tr(_NO_RESERVE)
+    elif reserve < 0.0:
+        words = tr(_MISSING, seconds=number(-reserve), tolerance=number(told["tolerance_s"]))
+    else:
+        return tr(_RESERVE, seconds=math.floor(reserve + 0.5)), live(_RESERVE, {"seconds": f"ROUND({{{RESERVE}}},0)"})
+    return words, sentence(words, {})
+
+
+def _banner(page: Page, text: Formula | str, style: str) -> None:
+    """Write the verdict large over the first columns; its colour follows the trains that are late."""
+    shown = str(page.put(page.next, 1, text, f"big {style}"))
     page.sheet.merge_cells(start_row=page.next, start_column=1, end_row=page.next, end_column=7)
-    page.sheet.row_dimensions[page.next].height = LINE_POINTS * 1.5 * (1 + len(text) // 95) + 8.0
+    page.sheet.row_dimensions[page.next].height = LINE_POINTS * 1.5 * (1 + len(shown) // 95) + 8.0
+    if isinstance(text, Formula):
+        for sign, colour in ((">0", RED_FILL), ("=0", GREEN_FILL)):
+            rule = FormulaRule(formula=[f"{COUNT}{sign}"], fill=fill(colour))
+            page.sheet.conditional_formatting.add(f"A{page.next}:G{page.next}", rule)
     page.next += 1
+
+
+def _counts(book: Book, page: Page, row: int, told: tuple[dict[str, Any], Sequence[dict[str, Any]]]) -> None:
+    """Write how many trains are late or not there, the tolerance, and the least reserve."""
+    said, trains = told
+    late = [train for train in trains if train["verdict"] in ("infeasible", "not finished")]
+    reserves = [train["reserve_left_s"] for train in trains if train["reserve_left_s"] is not None]
+    verdicts = "{feasibility_verdicts}"
+    count = f'COUNTIF({verdicts},"{tr(INFEASIBLE)}")+COUNTIF({verdicts},"{tr(NOT_FINISHED)}")'
+    lines: list[tuple[str, Any, str, str]] = [
+        (tr("trains"), Formula(f"ROWS({verdicts})", len(trains)) if trains else 0, "0", ""),
+        (tr("late or not there"), Formula(count, len(late)), "0", COUNT),
+        (tr("tolerance [s]"), Formula(f"{{{LIMIT}}}", float(said["tolerance_s"])), "0.0", ""),
+    ]
+    if reserves:
+        lines.append((tr("least reserve left [s]"), Formula("MIN({feasibility_reserves_s})", min(reserves)), "0.0", RESERVE))
+    for at, (label, value, style, name) in enumerate(lines, row):
+        page.put(at, 1, label, "label")
+        page.put(at, 2, value, style)
+        if name:
+            book.define(name, page, f"B{at}")
+
+
+def _tell_acceptance(book: Book, told: dict[str, Any], trains: Sequence[dict[str, Any]]) -> None:
+    """Tell the sheet of acceptance how late a train is at most, and how many are not there."""
+    late = [float(train["late_s"]) for train in trains if train["late_s"] is not None]
+    missing = sum(train["verdict"] == "not finished" for train in trains)
+    first = told.get("first") or {}
+    place = tr("train {train}", train=first["train"]) if first else ""
+    judged = told["verdict"] != "not judged"
+    book.acceptance.append(
+        Accepted(
+            mark("greatest lateness at a timed call"), "tolerance_s", float(told["tolerance_s"]), "s", "at_most",
+            Formula(f"MAX({{{LATE_RANGE}}})", max(late)) if late and judged else None, place, "", "user", "study",
+        )
+    )  # fmt: skip
+    formula = Formula(f'COUNTIF({{feasibility_verdicts}},"{tr(NOT_FINISHED)}")', missing)
+    book.acceptance.append(
+        Accepted(
+            mark("trains that do not come to their last timed call"), "unfinished_trains", 0.0, "", "at_most",
+            formula if trains else None, "", "", "user", "study", mark("Timetable"),
+        )
+    )  # fmt: skip
 
 
 def _ordered(trains: list[dict[str, Any]], book: Book) -> list[dict[str, Any]]:
@@ -90,15 +184,15 @@ def _ordered(trains: list[dict[str, Any]], book: Book) -> list[dict[str, Any]]:
     return sorted(named, key=key)
 
 
-def _row(train: dict[str, Any]) -> tuple[Any, ...]:
+def _row(train: dict[str, Any], tolerance_s: float) -> tuple[Any, ...]:
     late = train["late_s"]
     return (
         train["train"],
-        train["verdict"],
+        _verdict(train, tolerance_s),
         late,
         train["worst_station"] if late else "",
-        cause_in_words(train["cause"]),
-        train["why"],
+        tr(cause_in_words(train["cause"])),
+        recorded(train["why"]),
         train["reserve_left_s"],
         train["reserve_left_at"],
         train["lost_voltage_s"],
@@ -110,17 +204,22 @@ def _row(train: dict[str, Any]) -> tuple[Any, ...]:
     )
 
 
-def _colour(block: Block, tolerance_s: float) -> None:
+def _verdict(train: dict[str, Any], tolerance_s: float) -> Formula | str:
+    """Return the verdict on a train as a formula, where it follows from its lateness alone."""
+    late, word = train["late_s"], train["verdict"]
+    if late is None or word != (INFEASIBLE if late > tolerance_s else FEASIBLE):
+        return tr(word)
+    return Formula(f'IF({{late}}>{{{LIMIT}}},"{tr(INFEASIBLE)}","{tr(FEASIBLE)}")', tr(word))
+
+
+def _colour(block: Block) -> None:
     """Let verdicts show green and red by their word, delays red, reserves amber when small and red when missing."""
     add_rule = block.sheet.conditional_formatting.add
-    for word, colour in (
-        ("feasible", GREEN_FILL),
-        ("infeasible", RED_FILL),
-        ("not finished", RED_FILL),
-        ("not judged", AMBER_FILL),
-    ):
-        add_rule(block.cells(VERDICT), CellIsRule(operator="equal", formula=[f'"{word}"'], fill=fill(colour)))
-    late = CellIsRule(operator="greaterThan", formula=[f"{tolerance_s:g}"], fill=fill(RED_FILL))
+    for word, colour in ((FEASIBLE, GREEN_FILL), (INFEASIBLE, RED_FILL), (NOT_FINISHED, RED_FILL), (NOT_JUDGED, AMBER_FILL)):
+        add_rule(block.cells(VERDICT), CellIsRule(operator="equal", formula=[f'"{tr(word)}"'], fill=fill(colour)))
+    first = block.cell("late", block.first)
+    word = block.cell("verdict", block.first)
+    late = FormulaRule(formula=[f'AND(ISNUMBER({first}),{word}="{tr(INFEASIBLE)}")'], fill=fill(RED_FILL))
     add_rule(block.cells(LATE), late)
     colour_reserve(block, LEFT)
 

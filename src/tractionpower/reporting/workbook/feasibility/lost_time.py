@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import pandas as pd
 
 from tractionpower.reporting.facts.places import told
+from tractionpower.reporting.texts import tr
 from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 from tractionpower.reporting.workbook.frame.plots import COLOURS, Line, bars, draw, scatter
+from tractionpower.reporting.workbook.variants.axes import fit_axis, rooms_for_charts
 
 LEAST_S = 0.05
 """Less is not shown [s]."""
 
-KM, LOST, AREA = "place [km]", "lost [s]", "area of"
+MOST_AREAS = 24
+"""Areas that bars are legible for."""
+
+KM, LOST, AREA, NET = "place [km]", "lost [s]", "area of", "lost less gained [s]"
 
 
 def add(book: Book) -> None:
@@ -26,57 +33,84 @@ def add(book: Book) -> None:
     page = book.page("Lost time", "Seconds lost to low voltage, by place")
     page.note(
         "Running time of each train alone on the voltages of the run, less that at nominal voltage, both with train current"
-        " limits and driven flat out; summed over all trains. Negative: gained, since the voltage is above the nominal one. The"
-        " area of a place is that of the nearest substation that feeds there."
+        " limits and driven flat out; summed over all trains. Gained: the voltage is above the nominal one; seconds that are"
+        " gained are not set against losses elsewhere. The area of a place is that of the nearest substation that feeds there."
     )
-    areas = _areas(page, frame)
+    frame = frame.assign(area=frame["area"].astype(str), track=frame["track"].astype(str), km=frame["km"].round(6))
+    lines = [tracks for tracks in book.facts.lines.lines if frame["track"].isin(list(tracks)).any()]
+    kept = [_by_km(frame[frame["track"].isin(list(tracks))]) for tracks in lines]
+    areas = _areas(page, frame, kept)
     if areas is not None:
         page.new_page()
-        chart = bars("Seconds lost to low voltage, all trains", LOST, areas, AREA, [LOST])
+        some = Block(areas.sheet, areas.first, min(areas.last, areas.first + MOST_AREAS - 1), areas.headings, areas.keys)
+        chart = bars(tr("Seconds lost to low voltage, all trains"), tr(LOST), some, AREA, [LOST])
         chart.y_axis.scaling.min = 0
+        page.next += 1
         page.chart(chart)
-    lines = [tracks for tracks in book.facts.lines.lines if frame["track"].astype(str).isin(list(tracks)).any()]
-    rows = []
-    for _ in lines:  # charts before the long tables that they are drawn from
         page.new_page()
-        rows.append(page.room_for_chart())
-    page.new_page()
-    for tracks, row in zip(lines, rows, strict=True):
-        page.chart(_along(tracks, _by_km(page, frame, tracks)), row)
+        page.next += 1
+    rooms = rooms_for_charts(page, len(lines))
+    for number, (tracks, rows, row) in enumerate(zip(lines, kept, rooms, strict=True), 1):
+        page.section(tr("By kilometre, {tracks}", tracks=told(tracks)))
+        columns = (
+            Column(AREA, widest=26), Column(KM, "0.0"), Column(LOST, "0.00", key="lost"),
+            Column("gained [s]", "0.00", key="gained"), Column(NET, "0.00"), Column("trains that lose there", "0"),
+        )  # fmt: skip
+        block = page.table(columns, ([*line[:4], _net(line), line[4]] for line in rows))
+        book.define(f"lost_areas_{number}", page, block.cells(AREA))
+        book.define(f"lost_by_km_{number}", page, block.cells("lost"))
+        page.chart(_along(tracks, block, rows), row)
 
 
-def _areas(page: Page, frame: pd.DataFrame) -> Block | None:
+Kilometre = tuple[str, float, float, float, int]
+"""Area, place [km], what is lost and gained there [s], and trains that lose there."""
+
+
+def _by_km(own: pd.DataFrame) -> list[Kilometre]:
+    """Return the kilometres of a line of tracks, in their order."""
+    rows = []
+    for _, some in own.groupby(["km", "area"], sort=True):
+        km, area = float(some["km"].iloc[0]), str(some["area"].iloc[0])
+        lost = some["lost_s"].to_numpy(float)
+        trains = some.loc[some["lost_s"] >= LEAST_S / 10.0, "train"].nunique()
+        rows.append((area, km, float(lost[lost > 0.0].sum()), float(-lost[lost < 0.0].sum()), int(trains)))
+    return rows
+
+
+def _net(line: Kilometre) -> Formula:
+    return Formula("{lost}-{gained}", line[2] - line[3])
+
+
+def _areas(page: Page, frame: pd.DataFrame, kept: Sequence[Sequence[Kilometre]]) -> Block | None:
+    """Write what is lost in the area of each substation: sums over the kilometres below, by formulas."""
     lost = frame[frame["lost_s"] > 0.0]
-    sums = lost.groupby(lost["area"].astype(str))["lost_s"].agg(["sum", "max"])
-    trains = lost.groupby(lost["area"].astype(str))["train"].nunique()
-    sums = sums[sums["sum"] >= LEAST_S].sort_values("sum", ascending=False, kind="stable")
-    if sums.empty:
+    sums = {area: math.fsum(row[2] for rows in kept for row in rows if row[0] == area) for area in lost["area"].unique()}
+    order = sorted((area for area in sums if sums[area] >= LEAST_S), key=lambda area: (-sums[area], area))
+    if not order:
         return None
     page.section("By area")
     columns = (
-        Column(AREA, widest=30),
-        Column(LOST, "0.0"),
+        Column(AREA, widest=30, key="area"),
+        Column(LOST, "0.0", key="lost"),
         Column("trains that lose there", "0"),
-        Column("most in a kilometre [s]", "0.0"),
+        Column("most of a train in a kilometre [s]", "0.0"),
     )
-    many = dict(trains.items())
-    rows = [(str(area) or "no substation", row["sum"], many[area], row["max"]) for area, row in sums.iterrows()]
-    return page.table(columns, rows)
+    own = lost.groupby("area")
+    trains, most = own["train"].nunique(), own["lost_s"].max()
+    parts = "+".join(f"SUMPRODUCT(({{lost_areas_{k}}}={{area}})*{{lost_by_km_{k}}})" for k in range(1, len(kept) + 1))
+    rows = [(area, Formula(parts, sums[area]) if area else sums[area], trains[area], most[area]) for area in order]
+    block = page.table(columns, [(area or tr("no substation"), *rest) for area, *rest in rows])
+    page.next -= 1
+    page.put(page.next, 1, tr("all"), "label")
+    page.put(page.next, 2, Formula(f"SUM({block.cells('lost')})", math.fsum(sums[area] for area in order)), "sum 0.0")
+    page.next += 2
+    return block
 
 
-def _by_km(page: Page, frame: pd.DataFrame, tracks: Sequence[str]) -> Block:
-    """Write a table of the kilometres of a line of tracks."""
-    own = frame[frame["track"].astype(str).isin(list(tracks))]
-    km = own["km"].round(6)
-    sums = own.groupby(km)["lost_s"].sum()
-    area = dict(zip(km, own["area"].astype(str), strict=True))
-    many = dict(own[own["lost_s"] >= LEAST_S / 10.0].groupby(km)["train"].nunique().items())
-    page.section(f"By kilometre, {told(tracks)}")
-    columns = (Column(AREA, widest=30), Column(KM, "0.0"), Column(LOST, "0.00"), Column("trains that lose there", "0"))
-    return page.table(columns, [(area[at], at, seconds, many.get(at, 0)) for at, seconds in sums.items()])
-
-
-def _along(tracks: Sequence[str], block: Block) -> Any:
-    chart = scatter(f"Seconds lost to low voltage in each kilometre, {told(tracks)}", KM, LOST, legend=False)
-    draw(chart, block, Line("lost", KM, LOST, block.first, block.last, COLOURS[1]))
+def _along(tracks: Sequence[str], block: Block, rows: Sequence[Kilometre]) -> Any:
+    title = tr("Seconds lost to low voltage in each kilometre, {tracks}", tracks=told(tracks))
+    chart = scatter(title, tr(KM), tr(NET), legend=False)
+    draw(chart, block, Line(tr(LOST), KM, NET, block.first, block.last, COLOURS[1]))
+    fit_axis(chart.x_axis, [row[1] for row in rows], ticks=10)
+    fit_axis(chart.y_axis, [0.0, *(row[2] - row[3] for row in rows)])
     return chart

@@ -6,28 +6,41 @@ from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule
 
+from tractionpower.reporting.texts import mark, recorded, tr, trn
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import GREEN_FILL, RED_FILL, fill
+from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column, Page
 
+KINDS = {
+    "departure_shift": mark("departure shift"), "current_cap": mark("current cap"), "power_cap": mark("power cap"),
+    "headway": mark("headway"), "reserve": mark("later planned times"), "driving": mark("driving"),
+    "no_load_voltage": mark("no-load voltage"), "internal_resistance": mark("internal resistance"), "units": mark("units"),
+    "section_cabin": mark("section cabin"),
+}  # fmt: skip
+"""Kinds of changes in words; others as they are called."""
+
+YES, NO = mark("yes"), mark("no")
+
 _COLUMNS = (
-    Column("kind", widest=24),
-    Column("subject", widest=28),
-    Column("size"),
-    Column("what", widest=50),
-    Column("saves it"),
-    Column("verified by a run"),
+    Column("kind", widest=18),
+    Column("subject", widest=18),
+    Column("size", widest=10),
+    Column("what", widest=44),
+    Column("saves it", widest=6),
+    Column("verified by a run", widest=8),
     Column("late after it, at worst [s]", "0.0"),
-    Column("lost before, all trains [s]", "0.0"),
-    Column("lost after [s]", "0.0"),
+    Column("lost before, all trains [s]", "0.0", key="before"),
+    Column("lost after [s]", "0.0", key="after"),
+    Column("saved [s]", "0.0"),
     Column("cost [points]", "0.0"),
-    Column("as options of the command line", "beside", 56),
+    Column("as options of the command line", "beside", 50),
 )
 _SENSITIVITIES = (
-    Column("what is changed", widest=24),
-    Column("subject", widest=28),
-    Column("by"),
-    Column("as options of the command line", widest=52),
+    Column("what is changed", widest=18),
+    Column("subject", widest=18),
+    Column("by", widest=10),
+    Column("as options of the command line", widest=44),
     Column("change of loss, all trains [s]", "0.00"),
 )
 
@@ -40,38 +53,48 @@ def add(book: Book) -> None:
     page = book.page("What would save it", "What would save the timetable")
     search, found = told["search"], told.get("remedies") or []
     savers = [remedy for remedy in found if remedy["feasible"]]
-    words = (
-        f"{len(savers)} changes make it feasible, the cheapest first" if savers else "Nothing within the bounds makes it feasible"
-    )
-    page.wrapped(f"{words}; {search['tried']} runs with the network.")
+    words = tr("Nothing within the bounds makes it feasible")
+    if savers:
+        words = trn("{count} change makes it feasible", "{count} changes make it feasible, the cheapest first", len(savers))
+    page.wrapped(tr("{words}; {runs} runs with the network.", words=words, runs=search["tried"]))
     for note in search["notes"]:
-        page.note(note)
+        page.note(recorded(note))
     if found:
         page.section("Changes")
         block = page.table(_COLUMNS, map(_row, found))
         for heading in ("saves it", "verified by a run"):
-            for word, colour in (("yes", GREEN_FILL), ("no", RED_FILL)):
-                rule = CellIsRule(operator="equal", formula=[f'"{word}"'], fill=fill(colour))
+            for word, colour in ((YES, GREEN_FILL), (NO, RED_FILL)):
+                rule = CellIsRule(operator="equal", formula=[f'"{tr(word)}"'], fill=fill(colour))
                 block.sheet.conditional_formatting.add(block.cells(heading), rule)
     _sensitivities(page, told.get("sensitivities") or [])
 
 
 def _row(remedy: dict[str, Any]) -> tuple[Any, ...]:
+    before, after = remedy["lost_before_s"], remedy["lost_after_s"]
+    sign = "+" if remedy["kind"] == "departure_shift" else ""
     return (
-        remedy["kind"].replace("_", " "),
+        kind_in_words(remedy["kind"]),
         remedy["subject"],
-        f"{remedy['size']:+g} {remedy['unit']}"
-        if remedy["kind"] == "departure_shift"
-        else f"{remedy['size']:g} {remedy['unit']}",
-        remedy["words"],
-        remedy["feasible"],
-        remedy["verified"],
+        f"{remedy['size']:{sign}g} {remedy['unit']}",
+        recorded(remedy["words"]),
+        tr(YES if remedy["feasible"] else NO),
+        tr(YES if remedy["verified"] else NO),
         remedy["lateness_after_s"],
-        remedy["lost_before_s"],
-        remedy["lost_after_s"],
+        before,
+        after,
+        None if before is None or after is None else Formula("{before}-{after}", before - after),
         remedy["cost"],
         " ".join(f"--set '{change}'" for change in remedy["changes"]),
     )
+
+
+def kind_in_words(kind: str) -> str:
+    """Return the kind of a change in words.
+
+    >>> kind_in_words("departure_shift")
+    'departure shift'
+    """
+    return " + ".join(tr(KINDS[part]) if part in KINDS else part.replace("_", " ") for part in map(str.strip, kind.split("+")))
 
 
 def _sensitivities(page: Page, rows: list[dict[str, Any]]) -> None:
@@ -84,4 +107,4 @@ def _sensitivities(page: Page, rows: list[dict[str, Any]]) -> None:
 
 def _sensitivity(row: dict[str, Any]) -> tuple[Any, ...]:
     change = " ".join(f"--set '{text}'" for text in row.get("change") or ())
-    return row["kind"].replace("_", " "), row["subject"], row["per"], change, row["lost_s_change"]
+    return kind_in_words(row["kind"]), row["subject"], row["per"], change, row["lost_s_change"]

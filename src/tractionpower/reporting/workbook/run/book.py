@@ -5,7 +5,7 @@ from __future__ import annotations
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.workbook.common import acceptance, assumptions, cover, definitions, evidence, inputs, not_covered
-from tractionpower.reporting.workbook.feasibility import delays, feasibility, lost_time, remedies, sections
+from tractionpower.reporting.workbook.feasibility import causes, delays, feasibility, lost_time, remedies, sections
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
@@ -29,7 +29,7 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
     """Return the workbook of a run; a sheet that would be empty is left out."""
     book = Book(Facts(results, scenario), report)
     front = book.page("Cover", shorten(book.facts.study, cover.TITLE_LENGTH))
-    for add in (feasibility.add, remedies.add, delays.add, sections.add, lost_time.add):
+    for add in (feasibility.add, remedies.add, causes.add, delays.add, sections.add, lost_time.add):
         add(book)
     for add in (ratings.add, peaks.add, device_loads.add, useful_voltage.add):
         add(book)

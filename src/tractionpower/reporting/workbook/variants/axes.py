@@ -9,6 +9,7 @@ from typing import Any
 from openpyxl.chart.series import SeriesLabel
 
 from tractionpower.reporting.workbook.frame.cells import shorten
+from tractionpower.reporting.workbook.frame.page import Page
 from tractionpower.reporting.workbook.frame.plots import NAME_LENGTH
 
 POINTS = ("circle", "square", "triangle", "diamond", "x", "plus", "star")
@@ -33,6 +34,18 @@ def fit_axis(axis: Any, values: Sequence[float], *, ticks: int = 6) -> None:
     axis.scaling.min, axis.scaling.max = _round(math.floor(low / step) * step), _round(math.ceil(high / step) * step)
     if axis.scaling.min == axis.scaling.max:
         axis.scaling.max = _round(axis.scaling.min + step)
+
+
+def rooms_for_charts(page: Page, count: int) -> list[int]:
+    """Keep room for charts, each on a printed page of its own, before the tables that they are drawn from; return their rows."""
+    rooms = []
+    for number in range(count):
+        if number:
+            page.new_page()
+            page.next += 1  # the edge of a chart would show on the page before
+        rooms.append(page.room_for_chart())
+    page.new_page()
+    return rooms
 
 
 def show_points(series: Any, number: int, colour: str, *, line: bool = True) -> None:

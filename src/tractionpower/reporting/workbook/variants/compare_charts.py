@@ -12,7 +12,7 @@ from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column, Page, heading_of
 from tractionpower.reporting.workbook.frame.plots import COLOURS, DASHES, Line, bars, draw, scatter
-from tractionpower.reporting.workbook.variants.axes import fit_axis, name_series
+from tractionpower.reporting.workbook.variants.axes import fit_axis, name_series, rooms_for_charts
 
 Key = tuple[str, str]
 """Figure and place."""
@@ -57,12 +57,7 @@ def add_charts(book: Book, folders: Sequence[str], sheets: Sheets) -> None:
     if not groups and not lines:
         return
     page = book.page("Charts", "Charts: main figures side by side")
-    rooms = []
-    for number in range(len(groups) + len(lines)):  # charts before the tables that they are drawn from
-        if number:
-            page.new_page()
-        rooms.append(page.room_for_chart())
-    page.new_page()
+    rooms = rooms_for_charts(page, len(groups) + len(lines))
     for (title, unit, keys), room in zip(groups, rooms, strict=False):
         page.section(title)
         columns = [

@@ -12,7 +12,7 @@ from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 from tractionpower.reporting.workbook.frame.plots import COLOURS, DASHES, Line, bars, draw, scatter
-from tractionpower.reporting.workbook.variants.axes import fit_axis, name_series, show_points
+from tractionpower.reporting.workbook.variants.axes import fit_axis, name_series, rooms_for_charts, show_points
 from tractionpower.reporting.workbook.variants.sweep_cases import CASE, Cases, Cells, limit_cell
 from tractionpower.reporting.workbook.variants.sweep_words import differing_figures, heading
 from tractionpower.studies.sweep.cases import number_of
@@ -52,15 +52,12 @@ def add_charts(book: Book, data: SweepData, cases: Cases, cells: Cells, variants
         _over_grid(page, data, cases, cells, (names, grid))
         return
     shown = [name for name in names if name in variants.keys][: MOST_CHARTS // 2]
-    for number, name in enumerate(shown):
-        if number:
-            page.new_page()
-        page.chart(_by_case(variants, cases, name))
+    charts = [_by_case(variants, cases, name) for name in shown]
     numeric = [k for k, path in enumerate(data.changes.columns) if _is_spread(data, cases, path)] if len(data.paths) <= 5 else []
     for k in numeric[:MOST_CLOUDS]:
-        for name in shown[:2]:
-            page.new_page()
-            page.chart(_cloud(variants, cases, (data.names[data.paths[k]], k), name))
+        charts += [_cloud(variants, cases, (data.names[data.paths[k]], k), name) for name in shown[:2]]
+    for chart, room in zip(charts, rooms_for_charts(page, len(charts)), strict=True):
+        page.chart(chart, room)
 
 
 def grid_of(data: SweepData, cases: Cases) -> Grid | None:
@@ -97,12 +94,7 @@ def _is_spread(data: SweepData, cases: Cases, path: str) -> bool:
 def _over_grid(page: Page, data: SweepData, cases: Cases, cells: Cells, told: tuple[list[str], Grid]) -> None:
     """Draw each figure over the first key, a line for each value of the second, with a table of what is drawn below."""
     names, grid = told
-    rooms = []
-    for number in range(len(names)):  # charts before the tables that they are drawn from
-        if number:
-            page.new_page()
-        rooms.append(page.room_for_chart())
-    page.new_page()
+    rooms = rooms_for_charts(page, len(names))
     is_number = _numbers(grid.x)
     for name, room in zip(names, rooms, strict=True):
         page.section(tr(heading(name)))
