@@ -16,6 +16,9 @@ from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 from tractionpower.reporting.workbook.frame.plots import bars
 from tractionpower.reporting.workbook.variants.axes import name_series, stack
 
+FEW = 6
+"""Trains whose bars fit on a page below the sums."""
+
 MOST_BARS = 30
 """Trains that bars are legible for."""
 
@@ -30,8 +33,12 @@ def add(book: Book) -> None:
         return
     page = book.page("Delays by cause", "Delays of late trains by where their seconds first arose")
     page.note("Of each late train the timed call where it is latest; formulas on sheet Delays.")
+    page.widen(24.0, 26.0)
     top = page.next + 1
     page.next += len(ORIGINS) + 4
+    if len(worst) > FEW:
+        page.new_page()
+        page.next += 1
     room = page.room_for_chart()
     page.new_page()
     names = book.facts.station_names
@@ -114,5 +121,6 @@ def _chart(block: Block, worst: pd.DataFrame) -> Any:
     if chart.legend is None:
         chart.title = f"{title}: {tr(cause_in_words(kept[0]))}" if kept else title
         chart.title.overlay = False
-    chart.y_axis.scaling.min = 0
+    chart.height = min(chart.height, 5.5 + 0.75 * (last - block.first + 1))
+    chart.y_axis.scaling.min, chart.y_axis.crosses = 0, "max"  # the first train stands above, seconds below
     return chart

@@ -143,10 +143,10 @@ def _counts(book: Book, page: Page, row: int, told: tuple[dict[str, Any], Sequen
     if reserves:
         lines.append((tr("least reserve left [s]"), Formula("MIN({feasibility_reserves_s})", min(reserves)), "0.0", RESERVE))
     for at, (label, value, style, name) in enumerate(lines, row):
-        page.put(at, 1, label, "label")
-        page.put(at, 2, value, style)
+        page.put(at, 1, label, "plain")
+        page.put(at, 4, value, style)
         if name:
-            book.define(name, page, f"B{at}")
+            book.define(name, page, f"D{at}")
 
 
 def _tell_acceptance(book: Book, told: dict[str, Any], trains: Sequence[dict[str, Any]]) -> None:

@@ -112,5 +112,5 @@ def _along(tracks: Sequence[str], block: Block, rows: Sequence[Kilometre]) -> An
     chart = scatter(title, tr(KM), tr(NET), legend=False)
     draw(chart, block, Line(tr(LOST), KM, NET, block.first, block.last, COLOURS[1]))
     fit_axis(chart.x_axis, [row[1] for row in rows], ticks=10)
-    fit_axis(chart.y_axis, [0.0, *(row[2] - row[3] for row in rows)])
+    fit_axis(chart.y_axis, [0.0, *(net for row in rows if (net := row[2] - row[3]) >= LEAST_S or net <= -LEAST_S)])
     return chart
