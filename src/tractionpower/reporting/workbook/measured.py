@@ -18,7 +18,7 @@ from tractionpower.reporting.workbook.frame.facts import Subject
 from tractionpower.reporting.workbook.frame.page import Column, Page, heading_of
 from tractionpower.reporting.workbook.frame.plots import COLOURS, Line, draw, scatter, show_clock
 from tractionpower.reporting.workbook.frame.saving import save_as
-from tractionpower.reporting.workbook.measured_values import COMPUTED, MEASURED, Place, add_values, formulas_of
+from tractionpower.reporting.workbook.measured_values import COMPUTED, MEASURED, Place, add_values, formulas_of, series_words
 from tractionpower.reporting.workbook.variants.axes import fit_axis, rooms_for_charts
 from tractionpower.results.columns import TABLES
 from tractionpower.results.results import Results
@@ -112,7 +112,7 @@ def _means(page: Page, errors: pd.DataFrame, places: dict[str, Place]) -> None:
         place = places.get(str(row["series"]))
         live = formulas_of(place) if place is not None and place.whole else {}
         values = {name: live.get(name, row.get(name)) for name in _MEANS}
-        lines.append([recorded(str(row["series"])), row["unit"], *values.values()])
+        lines.append([series_words(row), row["unit"], *values.values()])
     shown = [k for k in range(len(_MEANS)) if any(line[k + 2] is not None and _is_known(line[k + 2]) for line in lines)]
     columns = [Column("series", widest=34), Column("unit", widest=8)]
     columns += [Column(_heading(_MEANS[k]), _style(_MEANS[k])) for k in shown]
@@ -129,7 +129,8 @@ def _part(page: Page, errors: pd.DataFrame, names: Sequence[str]) -> None:
     if len(errors):
         shown = ["series", "unit", *(name for name in names if errors[name].notna().any())]
         columns = [Column(_heading(name), _style(name), 34 if name == "series" else 24) for name in shown]
-        page.table(columns, errors[shown].itertuples(index=False))
+        words = [series_words(row) for row in errors.to_dict("records")]
+        page.table(columns, errors.assign(series=words)[shown].itertuples(index=False))
 
 
 def _heading(name: str) -> str:
@@ -150,14 +151,14 @@ def _style(name: str) -> str:
 
 def _charts(page: Page, errors: pd.DataFrame, places: dict[str, Place]) -> None:
     """Draw each series, measured and computed."""
-    shown = [row for row in errors.itertuples() if str(row.series) in places][:MOST_CHARTS]
+    shown = [row for row in errors.to_dict("records") if str(row["series"]) in places][:MOST_CHARTS]
     for told, room in zip(shown, rooms_for_charts(page, len(shown)), strict=True):
-        page.chart(_chart(places[str(told.series)], told), room)
+        page.chart(_chart(places[str(told["series"])], told), room)
 
 
 def _chart(place: Place, told: Any) -> Any:
     x = tr("time of day") if place.in_time else tr("place [km]")
-    chart = scatter(recorded(str(told.series)), x, f"[{told.unit}]")
+    chart = scatter(series_words(told), x, f"[{told['unit']}]")
     for key, words, colour in (("measured", MEASURED, COLOURS[1]), ("computed", COMPUTED, COLOURS[0])):
         block = place.block
         draw(chart, block, Line(tr(words), "x", f"{key}{place.column}", block.first, block.last, colour))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
-from tractionpower.reporting.workbook.frame.page import Block, Column
+from tractionpower.reporting.workbook.frame.page import Block, Column, heading_of
 
 MOST_ROWS = 4000
 """Rows of a sheet of values; of more every n-th stands there."""
@@ -57,6 +57,11 @@ class Place:
     computed: Array
 
 
+def series_words(row: Any) -> str:
+    """Return a series of table ``measured_errors`` in words: what it is of, and the quantity without its unit."""
+    return f"{recorded(str(row['subject']))}, {heading_of(str(row['quantity'])).split(' [')[0]}"
+
+
 def add_values(book: Book, rows: pd.DataFrame, errors: pd.DataFrame) -> dict[str, Place]:
     """Add the sheets of values, and return where each series stands."""
     in_time = bool(rows["time_s"].notna().any())
@@ -70,8 +75,9 @@ def add_values(book: Book, rows: pd.DataFrame, errors: pd.DataFrame) -> dict[str
             rows[rows["series"].isin(some)].groupby([x, "series"], sort=True)[["measured", "computed"]].first().unstack("series")
         )
         every = -(-len(own) // MOST_ROWS) or 1
-        kept = own.iloc[::every]
-        found = _sheet(book, kept, (some, first), in_time=in_time, whole=every == 1)
+        kept = pd.DataFrame(own.iloc[::every])
+        words = {str(row["series"]): series_words(row) for row in errors.to_dict("records")}
+        found = _sheet(book, kept, ({name: words[name] for name in some}, first), in_time=in_time, whole=every == 1)
         places |= dict(zip(some, found, strict=True))
     return places
 
@@ -80,10 +86,10 @@ def _side_by_side(rows: pd.DataFrame, x: str) -> pd.DataFrame:
     """Return values by time or place, a column for each series; a place that is passed again comes again, after the others."""
     again = rows.groupby(["series", x]).cumcount()
     wide = rows.assign(again=again).pivot(index=["again", x], columns="series", values=["measured", "computed"])
-    return wide.sort_index().droplevel("again")
+    return pd.DataFrame(wide.sort_index().droplevel("again"))
 
 
-def _sheet(book: Book, kept: pd.DataFrame, told: tuple[list[str], int], *, in_time: bool, whole: bool) -> list[Place]:
+def _sheet(book: Book, kept: pd.DataFrame, told: tuple[dict[str, str], int], *, in_time: bool, whole: bool) -> list[Place]:
     """Add a sheet of some series and name their ranges."""
     names, first = told
     count = first // AT_ONCE + 1
@@ -93,9 +99,9 @@ def _sheet(book: Book, kept: pd.DataFrame, told: tuple[list[str], int], *, in_ti
     else:
         page.note(tr("Of each series at most some {count} rows; table measured has all.", count=MOST_ROWS))
     columns = [Column("time of day" if in_time else "place [km]", "time" if in_time else "0.000", key="x")]
-    for k, name in enumerate(names):
+    for k, name in enumerate(names.values()):
         for key, words in (("measured", MEASURED), ("computed", COMPUTED), ("error", ERROR)):
-            columns.append(Column(f"{recorded(name)}: {tr(words)}", "0.00", key=f"{key}{k}"))
+            columns.append(Column(f"{name}: {tr(words)}", "0.00", key=f"{key}{k}"))
     at = kept.index.to_numpy(float)
     values = [(kept["measured"][name].to_numpy(float), kept["computed"][name].to_numpy(float)) for name in names]
     block = page.table(columns, (_line(at, values, row) for row in range(len(at))), frozen=True)

@@ -40,7 +40,10 @@ def add(book: Book) -> None:
         page.new_page()
         page.next += 1
     room = page.room_for_chart()
-    page.new_page()
+    if len(worst) > FEW:
+        page.new_page()
+    else:
+        page.next -= 12  # its bars are few, the chart is low
     names = book.facts.station_names
     columns = [
         Column("train", widest=24),
