@@ -6,7 +6,7 @@ import pytest
 from fake_runs import big_run, small_run
 
 from tractionpower.reporting.facts.run_data import RunData
-from tractionpower.reporting.figures.supply.power_figures import substation_currents, substation_power
+from tractionpower.reporting.figures.supply.power_figures import substation_currents
 from tractionpower.reporting.figures.supply.substation_figures import (
     duration_curve,
     load_duration,

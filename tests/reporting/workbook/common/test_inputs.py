@@ -89,7 +89,9 @@ def test_every_figure_of_a_vehicle_stands_beside_its_default(small, case):
     assert (rows["adhesion: a [km/h]"]["railcar"], rows["adhesion: a [km/h]"]["default"]) == (7.5, 7.5)
     assert rows["adhesion: c"]["default"] == 0.161  # a number without a unit
     (vehicle,) = case[1].vehicles
-    given = {heading for heading, field in flat(vehicle) if field.value not in (None, "", ()) and field.name not in ("id", "source")}
+    given = {
+        heading for heading, field in flat(vehicle) if field.value not in (None, "", ()) and field.name not in ("id", "source")
+    }
     assert given == set(rows)
 
 
@@ -137,13 +139,19 @@ def test_the_source_of_the_line_is_told(small):
 def test_limits_are_those_that_act_and_tell_whose_they_are(case, write):
     results, scenario = case
     own = tuple(
-        limit.model_copy(update={"value": 2100.0, "status": "user"}) if (limit.system, limit.name) == ("dc3000", "u_min2") else limit
+        limit.model_copy(update={"value": 2100.0, "status": "user"})
+        if (limit.system, limit.name) == ("dc3000", "u_min2")
+        else limit
         for limit in scenario.limits
     )
     changed_limits = scenario.model_copy(update={"limits": own})
     rows = {row["name"]: row for row in read_table(write(results, changed_limits)["Inputs limits"])}
     assert set(rows) == {limit.name for limit in own if limit.system == "dc3000"}
-    assert (rows["u_min2"]["value"], rows["u_min2"]["given / default"], rows["u_min2"]["status"]) == (2100, "given", "given by the user")
+    assert (rows["u_min2"]["value"], rows["u_min2"]["given / default"], rows["u_min2"]["status"]) == (
+        2100,
+        "given",
+        "given by the user",
+    )
     assert rows["u_max2"]["given / default"] == "default"
 
 
@@ -165,7 +173,10 @@ def test_parts_and_lists_are_words():
 
 
 def test_only_words_of_the_program_are_taken_for_such():
-    fields = {field.name: field for field in declared(Substation(id="in_service", km=1.0, no_load_voltage_v=3500.0, unit_resistance_ohm=0.1))}
+    fields = {
+        field.name: field
+        for field in declared(Substation(id="in_service", km=1.0, no_load_voltage_v=3500.0, unit_resistance_ohm=0.1))
+    }
     assert fields["state"].shown == "in service"
     assert fields["id"].shown == "in_service"  # a name
     assert choices(Substation.model_fields["state"].annotation) == {"in_service", "rectifiers_out", "bypassed", "open"}

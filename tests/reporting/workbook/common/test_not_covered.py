@@ -11,7 +11,9 @@ def _subjects(book):
 
 def test_what_every_study_leaves_out_is_told(small):
     rows = _subjects(small)
-    assert {"Harmonics", "Electromagnetic compatibility", "Transients", "Stability of input filters", "Short circuits"} <= set(rows)
+    assert {"Harmonics", "Electromagnetic compatibility", "Transients", "Stability of input filters", "Short circuits"} <= set(
+        rows
+    )
     assert [row["no."] for row in rows.values()] == list(range(1, len(rows) + 1))
     assert "Trains do not see each other" in rows["Signals and other trains"]["not covered"]
 

@@ -9,7 +9,7 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.sweep_data import SweepData
 from tractionpower.reporting.texts import mark, number, tr, trn
 from tractionpower.reporting.workbook.common import acceptance, assumptions, definitions, evidence, inputs, not_covered
-from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in, verdict_sentence
+from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
