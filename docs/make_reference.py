@@ -32,6 +32,7 @@ from tractionpower.model.line import Line
 from tractionpower.model.measured import MeasuredMap
 from tractionpower.model.quantity import unit_of
 from tractionpower.model.ratings import DutyRow, RectifierUnit
+from tractionpower.model.report import Report
 from tractionpower.model.scenario import StudyFile
 from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Timetable
@@ -54,6 +55,7 @@ FILES = {
     "duty_classes (CSV)": DutyRow,
     "rectifier_units (CSV)": RectifierUnit,
     "map of a measurement (YAML)": MeasuredMap,
+    "report.yaml (template of reports)": Report,
 }
 INPUTS = """Units stand in the names. A list may be the name of a CSV file instead, relative to the file that names it; its
 header row names the keys, those of a nested mapping with dots (`start.time`). A column that is a list of rows itself, such as
@@ -165,6 +167,7 @@ FILES_OF_A_RUN = """## Other files
 | `scenario.json` | What was computed, resolved: all inputs in one file. Its SHA-256 is the `input_hash` of the run. |
 | `figures/` | PNG: train graph, voltages along the line, loads of substations, rail potentials; in `trains/` single trains. |
 | `report.xlsx` | Verdicts, limits, trains, calls, substations, feeders, rails, energy, charts, events, inputs, definitions. |
+| `report.yaml` | The template of the reports with its logo, where there is one: [Reports](reports.md). |
 | `.running/` | Complete parts of the tables while a run lasts. `tractionpower report DIR --partial` reads them after a crash. |
 
 Figures and workbook are made from the tables: `tractionpower report DIR` writes them again without a simulation. A file that

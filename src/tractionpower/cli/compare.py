@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tractionpower.cli.look import Look, look_of
 from tractionpower.cli.messages import tell, tell_results
-from tractionpower.cli.options import Force, NoReports
+from tractionpower.cli.options import Force, NoReports, ReportLanguage, Template
 
 if TYPE_CHECKING:
     from tractionpower.studies.compare.study import Comparison
@@ -32,6 +33,8 @@ def compare(
         Path | None, typer.Option("--out", help="Folder of the comparison; default reports/<study>-compare/, or -measured/.")
     ] = None,
     no_reports: NoReports = False,
+    template: Template = None,
+    language: ReportLanguage = None,
     force: Force = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the errors against a measurement as JSON.")] = False,
 ) -> None:
@@ -41,7 +44,7 @@ def compare(
     if measured is None and map_file is None:
         if as_json:
             raise UsageError("--json prints the errors against a measurement; of folders, run.json and tables hold all")
-        _compare_folders(folders, base, out, no_reports=no_reports, force=force)
+        _compare_folders(folders, base, out, None if no_reports else look_of(template, language), force=force)
         return
     from tractionpower.cli.compare_measured import compare_measured
 
@@ -49,10 +52,11 @@ def compare(
         raise UsageError("a measurement needs both: --measured FILE and --map MAP.yaml")
     if len(folders) != 1:
         raise UsageError(f"{len(folders)} folders: a measurement is held against one run")
-    compare_measured(Path(folders[0]), measured, map_file, out, force=force, no_reports=no_reports, as_json=as_json)
+    look = None if no_reports else look_of(template, language)
+    compare_measured(Path(folders[0]), measured, map_file, out, force=force, look=look, as_json=as_json)
 
 
-def _compare_folders(folders: list[str], base: str | None, out: Path | None, *, no_reports: bool, force: bool) -> None:
+def _compare_folders(folders: list[str], base: str | None, out: Path | None, look: Look | None, *, force: bool) -> None:
     from tractionpower.cli.compare_summary import show
     from tractionpower.studies.compare.study import compare_folders, write_comparison
 
@@ -62,11 +66,11 @@ def _compare_folders(folders: list[str], base: str | None, out: Path | None, *, 
         tell(f"note: {note}")
     writer = write_comparison(comparison, folder, force=force)
     show(comparison)
-    reports = [] if no_reports else _write_reports(comparison, folder)
+    reports = [] if look is None else _write_reports(comparison, folder, look)
     tell_results(folder, reports, writer.beside)
 
 
-def _write_reports(comparison: Comparison, folder: Path) -> list[Path]:
+def _write_reports(comparison: Comparison, folder: Path, look: Look) -> list[Path]:
     from tractionpower.reporting.reports import write_reports
     from tractionpower.results.results import Results
 
@@ -74,4 +78,4 @@ def _write_reports(comparison: Comparison, folder: Path) -> list[Path]:
         tell("no figures and no workbook: the inputs of the base are not kept with its results")
         return []
     tell("writing figures and workbook")
-    return write_reports(Results.open(folder), comparison.scenario, folder)
+    return write_reports(Results.open(folder), comparison.scenario, folder, look.report(folder))

@@ -13,11 +13,12 @@ import typer
 from tractionpower.cli.messages import DONE, NOT_COMPLETED, echo_json, tell_problems, tell_results
 
 if TYPE_CHECKING:
+    from tractionpower.cli.look import Look
     from tractionpower.studies.measured.study import Comparison
 
 
 def compare_measured(
-    folder: Path, measured: Path, map_file: Path, out: Path | None = None, *, force: bool, no_reports: bool, as_json: bool
+    folder: Path, measured: Path, map_file: Path, out: Path | None = None, *, force: bool, look: Look | None, as_json: bool
 ) -> None:
     """Hold a measured file against the run in `folder`, write tables and reports, and say how far they are apart.
 
@@ -29,8 +30,10 @@ def compare_measured(
         The measurement, and what its columns are.
     out
         Folder of the comparison; None: ``reports/<study>-measured`` here.
-    force, no_reports, as_json
-        Replace what is there; write tables only; print the errors as JSON.
+    force, as_json
+        Replace what is there; print the errors as JSON.
+    look
+        How the reports look; None: there are none.
     """
     from tractionpower.errors import UsageError
     from tractionpower.reporting.measured import write_measured_reports
@@ -53,7 +56,7 @@ def compare_measured(
         echo_json(_document(comparison, target))
     else:
         _show(comparison)
-    reports = [] if no_reports else write_measured_reports(Results.open(target), target)
+    reports = [] if look is None else write_measured_reports(Results.open(target), target, look.report(target))
     tell_results(target, reports, writer.beside)
     done = any(each.errors["rows"] for each in comparison.series) and run["status"] == "complete"
     raise typer.Exit(DONE if done else NOT_COMPLETED)

@@ -13,14 +13,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tractionpower.cli.look import look_of
 from tractionpower.cli.messages import tell
 from tractionpower.cli.options import (
     ChangesOfCases,
     Force,
     FullTables,
     NoReports,
+    ReportLanguage,
     SchedulerOfCases,
     Study,
+    Template,
     WorkersOfCases,
     out_option,
     strict_option,
@@ -56,6 +59,8 @@ def contingency(
     scheduler: SchedulerOfCases = None,
     full_tables: FullTables = False,
     no_reports: NoReports = False,
+    template: Template = None,
+    language: ReportLanguage = None,
     force: Force = False,
     strict: Annotated[bool, strict_option("a limit is violated in a case")] = False,
 ) -> None:
@@ -66,7 +71,7 @@ def contingency(
     from tractionpower.studies.contingency.study import OutageStudy
     from tractionpower.studies.runner.into_folder import run_into
 
-    call = call_study(study, changes, out, "contingency")
+    call = call_study(study, changes, out, "contingency", look=look_of(template, language))
     grids = [word.strip() for word in grid.split(",")] if grid is not None else []
     call = replace(call, scenario=_choose(call.scenario, (only or [], device or [], grids)))
     with call.placed(), _as_options({"devices": "--device" if device else "", "kinds": "--only" if only else ""}):

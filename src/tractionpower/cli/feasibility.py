@@ -9,8 +9,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tractionpower.cli.look import look_of
 from tractionpower.cli.messages import tell
-from tractionpower.cli.options import Changes, Force, NoReports, Study, VerdictAsJson, out_option, strict_option
+from tractionpower.cli.options import (
+    Changes,
+    Force,
+    NoReports,
+    ReportLanguage,
+    Study,
+    Template,
+    VerdictAsJson,
+    out_option,
+    strict_option,
+)
 from tractionpower.cli.progress import steps_bar
 from tractionpower.cli.study_call import StudyCall, call_study, exit_code, keeping
 
@@ -32,6 +43,8 @@ def feasibility(
         bool | None, typer.Option("--search/--no-search", help="Search for what would save it; default: when infeasible.")
     ] = None,
     no_reports: NoReports = False,
+    template: Template = None,
+    language: ReportLanguage = None,
     force: Force = False,
     strict: Annotated[bool, strict_option("the timetable is infeasible")] = False,
     as_json: VerdictAsJson = False,
@@ -40,7 +53,7 @@ def feasibility(
     from tractionpower.cli.console import warn_of_compilation
     from tractionpower.cli.feasibility_summary import show
 
-    call = call_study(study, changes, out, "feasibility")
+    call = call_study(study, changes, out, "feasibility", look=look_of(template, language))
     call.greet()
     warn_of_compilation("advance")
     judgement, writer = _judge(call, tolerance, force=force)

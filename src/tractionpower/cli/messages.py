@@ -90,9 +90,13 @@ def tell_results(folder: Path, reports: Sequence[Path], beside: Iterable[Path]) 
     tell_beside(beside)
 
 
+FIGURES = (".png", ".svg", ".pdf")
+"""Suffixes of figures."""
+
+
 def tell_reports(paths: Sequence[Path]) -> None:
     """Say where the reports are, and which of them stands beside one that is held open."""
-    figures = [path for path in paths if path.suffix == ".png"]
+    figures = [path for path in paths if path.suffix in FIGURES]
     if figures:
         tell(f"figures: {len(figures)} in {figures[0].parent}")
     for path in paths:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -17,6 +18,11 @@ FullTables = Annotated[
 ]
 NoReports = Annotated[bool, typer.Option("--no-reports", help="Write the tables only, no figures and no workbook.")]
 Force = Annotated[bool, typer.Option("--force", help="Replace what is there, even results of another study.")]
+Template = Annotated[
+    Path | None,
+    typer.Option("--template", metavar="FILE", help="Template of the reports (report.yaml): company, sheets, figures, language."),
+]
+ReportLanguage = Annotated[str | None, typer.Option("--language", metavar="en|pl", help="Language of the reports.")]
 VerdictAsJson = Annotated[bool, typer.Option("--json", help="Print the verdict as JSON.")]
 
 

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tractionpower.cli.look import look_of
+from tractionpower.cli.options import ReportLanguage, Template
+
 if TYPE_CHECKING:
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.results import Results
@@ -32,6 +35,8 @@ def report(  # noqa: PLR0917 - typer gives each option by name
     out: Annotated[
         Path | None, typer.Option("--out", help=f"Folder of the reports; default DIR, of a part DIR/{SELECTED}/<what>.")
     ] = None,
+    template: Template = None,
+    language: ReportLanguage = None,
 ) -> None:
     """Write the reports of an earlier run again, of all of it or of a part."""
     from tractionpower.cli.messages import tell, tell_reports
@@ -40,10 +45,11 @@ def report(  # noqa: PLR0917 - typer gives each option by name
     from tractionpower.reporting.reports import write_reports
     from tractionpower.results.results import Results
 
+    look = look_of(template, language)
     selection = _selection(trains, tracks, (begin, end), (from_km, to_km))
     results = Results.open(folder, partial=partial)
     if results.run.get("kind") == "measured" and selection.is_everything:
-        tell_reports(write_measured_reports(results, out or folder))
+        tell_reports(write_measured_reports(results, out or folder, look.report(folder, is_new=False, keep=out is None)))
         return
     scenario = _scenario(results, folder)
     target = out or _folder(folder, selection, partial=partial)
@@ -55,7 +61,8 @@ def report(  # noqa: PLR0917 - typer gives each option by name
         tell(f"a part of the run: {', '.join(f'{name} {rows} rows' for name, rows in _counts(results).items())}")
     elif target.exists() and not target.is_dir():
         raise UsageError(f"{target} is no folder")
-    tell_reports(write_reports(results, scenario, target))
+    report = look.report(folder, is_new=False, keep=target == folder)
+    tell_reports(write_reports(results, scenario, target, report))
     if status != "complete":
         tell(f"the run is {status}: the reports hold what is in its tables")
 

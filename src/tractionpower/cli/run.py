@@ -7,7 +7,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from tractionpower.cli.options import Changes, Force, NoReports, Study, out_option, strict_option
+from tractionpower.cli.look import look_of
+from tractionpower.cli.options import Changes, Force, NoReports, ReportLanguage, Study, Template, out_option, strict_option
 from tractionpower.cli.progress import steps_bar
 from tractionpower.cli.study_call import call_study, exit_code, keeping
 
@@ -18,9 +19,12 @@ if TYPE_CHECKING:
 
 def run(
     study: Study,
+    *,
     out: Annotated[Path | None, out_option("reports/<study>/")] = None,
     changes: Changes = None,
     no_reports: NoReports = False,
+    template: Template = None,
+    language: ReportLanguage = None,
     force: Force = False,
     strict: Annotated[bool, strict_option("a limit is violated")] = False,
 ) -> None:
@@ -29,7 +33,7 @@ def run(
     from tractionpower.cli.run_summary import show
     from tractionpower.cosimulation.run import Run
 
-    call = call_study(study, changes, out)
+    call = call_study(study, changes, out, look=look_of(template, language))
     call.greet()
     warn_of_compilation("advance")
     with call.preparing(force=force) as writer:

@@ -10,8 +10,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tractionpower.cli.look import look_of
 from tractionpower.cli.messages import tell
-from tractionpower.cli.options import Force, NoReports, Study, VerdictAsJson, out_option, set_option, strict_option
+from tractionpower.cli.options import (
+    Force,
+    NoReports,
+    ReportLanguage,
+    Study,
+    Template,
+    VerdictAsJson,
+    out_option,
+    set_option,
+    strict_option,
+)
 from tractionpower.cli.progress import steps_bar
 from tractionpower.cli.study_call import StudyCall, call_study, exit_code, keeping, workers_or_cores
 
@@ -35,6 +46,8 @@ def size(
         str | None, typer.Option("--scheduler", metavar="ADDRESS", help="With --search: Dask scheduler whose workers run it.")
     ] = None,
     no_reports: NoReports = False,
+    template: Template = None,
+    language: ReportLanguage = None,
     force: Force = False,
     strict: Annotated[
         bool, strict_option("a device or a limit does not hold; without a rating a device is not rated, which is no violation")
@@ -47,7 +60,7 @@ def size(
 
     if not search:
         _refuse_without_search({"--workers": workers, "--scheduler": scheduler})
-    call = call_study(study, changes, out, "size")
+    call = call_study(study, changes, out, "size", look=look_of(template, language))
     call.greet()
     warn_of_compilation("advance")
     sized, writer = _size(call, force=force, goes_on=search)

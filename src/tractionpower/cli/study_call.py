@@ -6,12 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Protocol, TypeVar
 
 import typer
 
+from tractionpower.cli.look import Look
 from tractionpower.cli.messages import (
     DONE,
     LIMIT_VIOLATED,
@@ -63,6 +64,8 @@ class StudyCall:
         Where the results go.
     kind
         What is computed, as ``run.json`` says it; empty: a run.
+    look
+        How the reports look.
     """
 
     loaded: LoadedScenario
@@ -70,6 +73,7 @@ class StudyCall:
     name: str
     folder: Path
     kind: str = ""
+    look: Look = field(default_factory=Look)
 
     @property
     def cases_folder(self) -> Path:
@@ -127,7 +131,8 @@ class StudyCall:
         reports: Sequence[Path] = []
         if not no_reports:
             tell("writing figures and workbook")
-            reports = write_reports(Results.open(self.folder), self.scenario, self.folder)
+            report = self.look.report(self.folder, self.loaded.report)
+            reports = write_reports(Results.open(self.folder), self.scenario, self.folder, report)
         tell_results(self.folder, reports, writer.beside)
         if reports and remark:
             tell(remark)
@@ -137,7 +142,9 @@ class StudyCall:
         raise typer.Exit(code)
 
 
-def call_study(study: str, changes: Sequence[str] | None, out: Path | None, kind: str = "") -> StudyCall:
+def call_study(
+    study: str, changes: Sequence[str] | None, out: Path | None, kind: str = "", *, look: Look | None = None
+) -> StudyCall:
     """Load a study and change it; results go to `out`, or into a folder of the study and the `kind` of what is computed."""
     from tractionpower.io.scenario_files import load_scenario
 
@@ -145,7 +152,7 @@ def call_study(study: str, changes: Sequence[str] | None, out: Path | None, kind
     scenario = loaded.changed(changes or [])
     name = _study_name(loaded) if kind else loaded.folder.name
     folder = out if out is not None else Path("reports") / (f"{name}-{kind}" if kind else name)
-    return StudyCall(loaded, scenario, name, folder, kind)
+    return StudyCall(loaded, scenario, name, folder, kind, look or Look())
 
 
 def _study_name(loaded: LoadedScenario) -> str:

@@ -11,13 +11,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tractionpower.cli.look import look_of
 from tractionpower.cli.options import (
     ChangesOfCases,
     Force,
     FullTables,
     NoReports,
+    ReportLanguage,
     SchedulerOfCases,
     Study,
+    Template,
     WorkersOfCases,
     out_option,
     strict_option,
@@ -51,6 +54,8 @@ def sweep(
     scheduler: SchedulerOfCases = None,
     full_tables: FullTables = False,
     no_reports: NoReports = False,
+    template: Template = None,
+    language: ReportLanguage = None,
     force: Force = False,
     strict: Annotated[bool, strict_option("a case violates a limit")] = False,
 ) -> None:
@@ -60,7 +65,7 @@ def sweep(
     from tractionpower.studies.runner.into_folder import run_into
     from tractionpower.studies.sweep.study import SweepStudy
 
-    call = call_study(study, changes, out, "sweep")
+    call = call_study(study, changes, out, "sweep", look=look_of(template, language))
     plan = _plan(call.scenario, (vary or [], cases, ranges or []), sample, seed)
     call.greet(f"; {len(plan.cases) - 1} variants and the base")
     with call.placed():

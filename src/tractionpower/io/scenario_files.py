@@ -21,6 +21,7 @@ from tractionpower.io.overlaid_tables import OverlaidTable, Row
 from tractionpower.io.problems import in_file_order
 from tractionpower.io.provenance import Mark, Provenance
 from tractionpower.io.rating_files import DUTY_CLASSES, RECTIFIER_UNITS
+from tractionpower.io.report_files import add_report
 from tractionpower.io.rolling_stock import RollingStock
 from tractionpower.io.stock_finder import FOLDER
 from tractionpower.io.text_files import Source, relative_label, write_files
@@ -29,6 +30,7 @@ from tractionpower.model.base import FORMAT, format_time
 from tractionpower.model.change import apply_changes
 from tractionpower.model.library import Library
 from tractionpower.model.line import Line
+from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario, StudyFile
 from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Timetable
@@ -63,6 +65,8 @@ class LoadedScenario:
         Where the study was found, in words.
     library
         The whole tables of equipment; the scenario holds the rows that it uses.
+    report
+        The template of reports that the study names. It changes nothing that is computed.
     """
 
     scenario: Scenario
@@ -72,6 +76,7 @@ class LoadedScenario:
     origin: str = ""
     library: Library = field(default_factory=shipped_library)
     file: Path = Path(STUDY_FILE)
+    report: Report | None = None
 
     def changed(self, changes: Iterable[str]) -> Scenario:
         """Return the scenario with changes by path applied; they may name any row of the library.
@@ -120,7 +125,10 @@ def read_scenario(study: str | Path) -> tuple[LoadedScenario | None, list[Proble
     if scenario is None:
         return None, problems
     told = tuple(problems)
-    loaded = LoadedScenario(scenario, Provenance(files.root), found.folder, told, found.origin, files.library, found.file)
+    loaded = LoadedScenario(
+        scenario, Provenance(files.root), found.folder, told, found.origin,
+        library=files.library, file=found.file, report=files.report,
+    )  # fmt: skip
     return loaded, problems
 
 
@@ -191,6 +199,7 @@ class _StudyReader:
     stock: RollingStock = field(init=False)
     root: Mark = field(init=False)
     library: Library = field(default_factory=Library)
+    report: Report | None = None
 
     def __post_init__(self) -> None:
         self.reader = Reader(self.found.folder)
@@ -208,6 +217,7 @@ class _StudyReader:
         limits = self._overlaid(LIMITS, names)
         of_library = (CONDUCTORS, DUTY_CLASSES, RECTIFIER_UNITS)
         self.library = Library(**{table.name: self._overlaid(table, names) for table in of_library})
+        self._read_report(names)
         if study is None or line is None or supply is None or timetable is None or self.reader.has_errors:
             return None
         own = {name: getattr(study, name) for name in _OF_THE_STUDY}
@@ -236,6 +246,12 @@ class _StudyReader:
         if model is Timetable:  # also of a broken one, so that problems of its trains are told in the same breath
             self.stock.add_timetable(content)
         return part
+
+    def _read_report(self, names: dict[str, Any]) -> None:
+        source = self._source("report", names) if names.get("report") is not None else None
+        if source is not None:
+            self.report, mark = add_report(self.reader, source)
+            self.root.children |= {} if mark is None else {"report": mark}
 
     def _overlaid(self, table: OverlaidTable[Row], names: dict[str, Any]) -> tuple[Row, ...]:
         # Of a broken file no rows; its problems stop the reading later.

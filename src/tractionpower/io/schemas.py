@@ -13,6 +13,7 @@ from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.measured import MeasuredMap
 from tractionpower.model.ratings import DutyRow, RectifierUnit
+from tractionpower.model.report import Report
 from tractionpower.model.scenario import StudyFile
 from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Timetable
@@ -30,6 +31,7 @@ _MODELS: dict[str, type[BaseModel]] = {
     "duty_classes": DutyRow,
     "rectifier_units": RectifierUnit,
     "measured": MeasuredMap,
+    "report": Report,
 }
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"

@@ -8,6 +8,7 @@ from pydantic import BaseModel
 
 from tractionpower.io.finder import STUDY_FILE
 from tractionpower.model.line import Line
+from tractionpower.model.report import Report
 from tractionpower.model.scenario import StudyFile
 from tractionpower.model.supply import Supply
 from tractionpower.model.timetable import Timetable
@@ -24,6 +25,7 @@ _STUDY: dict[str, Any] = {
     "clock": {"start": "00:00:00", "end": "00:20:00", "step_s": 1.0},
     "coupling": "full",
     "seed": 1,
+    "report": "report.yaml",
 }
 
 _LINE: dict[str, Any] = {
@@ -160,6 +162,8 @@ _LOCAL: dict[str, Any] = {
     "vehicles": [{"id": "unit", "load_percent": 40.0}],
 }
 
+_REPORT: dict[str, Any] = {"format": 1, "company": "", "language": "en", "paper": "fit"}
+
 FILES: dict[str, tuple[type[BaseModel], dict[str, Any]]] = {
     "line.yaml": (Line, _LINE),
     "supply.yaml": (Supply, _SUPPLY),
@@ -169,6 +173,7 @@ FILES: dict[str, tuple[type[BaseModel], dict[str, Any]]] = {
     "rollingstock/vehicles/unit.yaml": (Vehicle, _UNIT),
     "rollingstock/trains/express.yaml": (Train, _EXPRESS),
     "rollingstock/trains/local.yaml": (Train, _LOCAL),
+    "report.yaml": (Report, _REPORT),
     STUDY_FILE: (StudyFile, _STUDY),
 }
 
@@ -185,6 +190,7 @@ All values are assumed: put yours in their place.
 | `line.yaml` | tracks, stations, profile, speed limits |
 | `supply.yaml` | substations, section cabins, contact lines, return circuit, loads; as comments feeders, switches, bonds, earth |
 | `timetable.yaml` | which train runs when and where, and where it stops |
+| `report.yaml` | how the reports look: company, logo, language, sheets, figures |
 | `rollingstock/trains/*.yaml` | trains: which vehicles they are made of |
 | `rollingstock/vehicles/*.yaml` | vehicles: mass, running resistance, drive, brakes, auxiliaries |
 

@@ -11,6 +11,23 @@ from tractionpower.model.base import Declaration, Format, Text
 Language = Literal["en", "pl"]
 FigureFormat = Literal["png", "svg", "pdf"]
 
+SHEETS = (
+    "Cover", "Acceptance", "Assumptions",
+    "Feasibility", "What would save it", "Delays", "Sections", "Lost time",
+    "Ratings", "Substation ratings", "Unit ratings", "Units", "Feeder ratings", "Contact line", "Return feeders",
+    "Ratings by window", "Loads by window", "Peaks", "Breakers", "Demand", "Sharing", "Current duration", "Voltage durations",
+    "Useful voltage", "Useful voltage by hour",
+    "Outages", "All cases", "Device envelope", "Envelope", "Delays in outages",
+    "Variants", "Best and worst", "Differences", "Verdicts", "All figures", "Inputs that differ",
+    "Run", "Zones", "Cases", "Other devices",
+    "Trains", "Timetable", "Calls", "Voltages", "Substations", "Feeders", "Return circuit", "Rail potential",
+    "Energy", "Losses", "Key figures", "Charts",
+    "Extract trains", "Voltage profile", "Extract loads", "Load duration", "Events",
+    "Inputs study", "Inputs line", "Inputs supply", "Inputs stock", "Inputs timetable", "Inputs limits",
+    "Model", "Not covered", "Solver evidence", "Definitions", "Errors", "Values",
+)  # fmt: skip
+"""Names of the sheets of all workbooks, to tell a misspelt one of a template."""
+
 ShortText = Annotated[Text, Field(max_length=300)]
 
 

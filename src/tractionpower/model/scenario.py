@@ -92,6 +92,7 @@ class StudyFile(Declaration):
         at_least=0,
         default=120.0,
     )
+    report: Text | None = Field(default=None, description="File of the template of reports; left out: English, all sheets.")
     output: Output = Field(default=Output(), description="What a run writes.")
     feasibility: Feasibility = Field(default=Feasibility(), description="How the timetable is judged.")
     remedies: RemedySearch = Field(
