@@ -7,7 +7,7 @@ from tractionpower.cli.messages import exit_code_of, has_errors, summary
 from tractionpower.errors import InputError, Problem
 
 SCHEMAS = ["study", "line", "supply", "timetable", "train", "vehicle", "limits", "conductors", "duty_classes"]
-SCHEMAS += ["rectifier_units", "measured"]
+SCHEMAS += ["rectifier_units", "measured", "report"]
 
 
 @pytest.fixture

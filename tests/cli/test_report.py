@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 import pytest
+from openpyxl import load_workbook
 from small_files import write_small_study
 from train_study import write_train_study
 
@@ -53,6 +54,29 @@ def test_reports_are_written_again_from_the_tables_alone(folder, capsys, monkeyp
     told = capsys.readouterr().err
     assert f"report: {folder / 'report.xlsx'}" in told
     assert f"in {folder / 'figures'}" in told
+
+
+def test_reports_made_later_follow_the_template_of_the_run(folder):
+    Path("office.yaml").write_text("company: Office\nsheets: [Trains, Cover]\nfigures: {formats: [svg]}\n", encoding="utf-8")
+    assert main(["run", "small", "--template", "office.yaml"]) == 0
+    Path("office.yaml").unlink()
+    for command in (None, ["report", str(folder)]):
+        assert command is None or main(command) == 0
+        book = load_workbook(folder / "report.xlsx")
+        assert book.sheetnames == ["Cover"], "a run without trains has no such sheet"
+        assert "Office" in [cell.value for row in book["Cover"].iter_rows() for cell in row]
+        assert {path.suffix for path in (folder / "figures").rglob("*.*")} == {".svg"}
+    kept = folder / "report.yaml"
+    kept.write_text(kept.read_text(encoding="utf-8").replace("Office", "Office of today"), encoding="utf-8")
+    assert main(["report", str(folder)]) == 0
+    assert load_workbook(folder / "report.xlsx").properties.creator == "Office of today"
+
+
+def test_a_wrong_template_stops_a_run_before_it_begins(folder, capsys, monkeypatch):
+    monkeypatch.setattr("tractionpower.cosimulation.run.Run.execute", lambda *_: pytest.fail("no simulation"))
+    Path("office.yaml").write_text("companie: Office\n", encoding="utf-8")
+    assert main(["run", "small", "--template", "office.yaml"]) == 1
+    assert "did you mean company?" in capsys.readouterr().err
 
 
 def test_reports_of_a_run_are_the_same_when_they_are_written_again(folder):
