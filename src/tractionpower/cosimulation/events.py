@@ -198,6 +198,9 @@ _TOLD: dict[str, Callable[[dict[str, Any]], str]] = {
     ),
 }
 
+KINDS_TOLD = tuple(_TOLD)
+"""All kinds of events."""
+
 
 def _coded(words: list[str]) -> tuple[list[int], list[str]]:
     known = sorted(set(words))

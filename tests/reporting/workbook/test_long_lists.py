@@ -1,7 +1,7 @@
 """A list within a row is told in a cell, a long one by its ends."""
 
 from tractionpower.model.loads import Load
-from tractionpower.reporting.workbook.common.inputs import MOST_ROWS, in_words
+from tractionpower.reporting.workbook.common.declared import MOST_IN_CELL, in_words
 
 
 def profile(count):
@@ -14,6 +14,6 @@ def test_a_short_profile_is_told_row_by_row():
 
 
 def test_a_long_profile_is_told_by_its_ends():
-    count = MOST_ROWS + 1
+    count = MOST_IN_CELL + 1
     last = f"time 00:{count - 1:02d}:00, power kw {10 * (count - 1)}"
     assert in_words(profile(count)) == f"{count} rows, from time 00:00:00, power kw 0 to {last}"

@@ -1,12 +1,382 @@
-"""Sentences that a run records in English, with places for names and numbers, so that reports can tell them in any language."""
+"""Sentences that a run records in English, with places for names and numbers, so that reports can tell them in any language.
+
+What lower floors declare as constants is gathered by code (`tractionpower.reporting.texts.sources`); here stand names, sentences
+and messages that they put together. A place takes any text, which is looked up in its turn.
+"""
 
 from __future__ import annotations
 
-SENTENCES: tuple[str, ...] = (
+FIGURES = (
+    "auxiliary energy", "breaker share", "drive loss", "energy", "energy fed back", "energy returned", "energy taken",
+    "feeder heat", "highest clock 15 min power", "highest current", "highest demand", "highest mean power {window}",
+    "highest pantograph voltage", "highest power", "highest rms current {window}", "highest speed", "highest voltage",
+    "journey time", "late at end", "late trains", "least reserve left", "length", "load energy",
+    "longest spell above {limit}", "longest spell below {limit}", "longest spell without voltage", "lost to low voltage",
+    "lowest 10 s mean voltage", "lowest busbar voltage", "lowest pantograph voltage", "lowest voltage",
+    "lowest useful voltage {kind} current weighted {window}", "lowest useful voltage {kind} time mean {window}",
+    "mean busbar voltage", "mean current", "mean pantograph voltage", "mean speed", "mean useful voltage current weighted",
+    "mean useful voltage time mean", "plant heat", "plant regulation", "rail potential", "refused energy", "rms current",
+    "running time", "starting resistor energy", "time closed", "time of useful steps", "trips", "useful charge",
+    "useful current", "useful energy", "useful power", "utilisation", "voltage of useful steps vs", "voltage of useful steps",
+)  # fmt: skip
+"""Names of key figures in words."""
+
+DEFINITIONS = (
+    "at the start of a step",
+    "auxiliaries and heating",
+    "between pantograph and wheel, without resistors",
+    "computed less planned time at the last timed call reached; if another is overdue, the time since it",
+    "dissipative resistance times the square of the current, sum over the steps; a part of the regulation",
+    "distance run over the running time",
+    "distance run, since the start of the clock and its warm-up",
+    "fed back into the line",
+    "from start to end, stops included; what lies before the clock or in its warm-up is left out",
+    "from start to end, without the time at stops; what lies before the clock or in its warm-up is left out",
+    "heat in starting resistors",
+    "highest mean of a quarter of an hour by the clock, from the grid",
     "highest mean of a step",
-    "mean over the run",
-    "root of the mean square over the run",
+    "highest mean of a step at the pantograph",
+    "highest mean of a step between contact line and rail, at trains, loads and cross-sections",
+    "highest mean of a step, U I",
+    "highest mean of a step, in either direction",
+    "highest mean over a quarter of an hour by the clock, U I",
+    "highest of all feeders: highest mean of a step, of the setting of the breaker",
+    "highest of all {kind}: RMS current over {window}, of what the rating permits",
     "highest sliding mean over {window}, U I; time is the start of the window",
     "highest sliding root mean square over {window}; time is the start of the window",
+    "how often its breaker trips",
+    "least time by which a train could come earlier than planned, flat out on the recorded voltages",
+    "longest time of a train {what}, without a break",
+    "longest time of a train {what}, without a break, 0.1 V tolerance",
+    "longest unbroken time with a rail potential of either sign above the touch voltage of that name, {volts} V",
+    "lowest mean of a step",
+    "lowest mean of a step at the pantograph",
+    "lowest mean of a step between contact line and rail, at trains, loads and cross-sections",
+    "lowest mean useful voltage of a {kind}, {definition}, of a given part of the day",
+    "lowest mean useful voltage of a {kind}, {definition}, of an hour by the clock",
+    "lowest mean useful voltage of a {kind}, {definition}, of the run",
+    "lowest sliding mean over 10 s",
+    "magnitude of the rail potential, greatest of all cases",
+    "mean of all steps with a voltage, at the pantograph",
+    "mean of the steps with a voltage",
+    "mean over the run",
+    "mean useful voltage, current-weighted: sum U |I| dt / sum |I| dt",
+    "mean useful voltage, current-weighted: sum U |I| dt / sum |I| dt, every train divided by its time in the zone",
+    "mean useful voltage, time mean: over all trains and steps",
+    "mean useful voltage, time mean: over steps with traction effort",
+    "of all trains, against themselves at nominal voltage; where they gain left out",
+    "of the electric brake that the line did not take",
+    "resistance times the square of the current, sum over the steps",
+    "root of the mean square over the run",
+    "share of the steps in which it is closed",
+    "sum U dt over all trains and steps; over time_of_useful_steps_s: the mean useful voltage, time mean",
+    "sum U dt over steps with traction effort; over time_of_useful_steps_s: the mean useful voltage, time mean",
+    "sum U |I| dt; over useful_charge_ah: the mean useful voltage, current-weighted",
+    "sum of (E - U) I over the steps",
+    "sum of -U I over the steps in which the busbar feeds back",
+    "sum of U I over the steps",
+    "sum over trains of their mean U |I| in the zone; over useful_current_a: the mean useful voltage",
+    "sum over trains of their mean |I| in the zone",
+    "sum |I| dt",
+    "taken from the line",
+    "time of all trains and steps",
+    "time of steps with traction effort",
+    "trains later than the tolerance at a timed call, or not there",
+    "{verdict}, worst of all cases",
+    "above U_max1",
+    "above U_max2",
+    "below U_min2",
+    "without voltage",
 )
-"""Definitions of key figures, notes and verdicts of a run, messages of events, names of quantities."""
+"""Definitions of key figures."""
+
+VERDICTS = (
+    "lowest voltage",
+    "highest voltage",
+    "longest spell above U_max1",
+    "longest spell of the rail potential above {volts} V",
+    "mean useful voltage of trains, current-weighted",
+    "mean useful voltage of trains, time mean",
+    "mean useful voltage of zones, current-weighted",
+    "mean useful voltage of zones, time mean",
+    "mean useful voltage of zones, {definition} (of trains there for {seconds} s or more)",
+    "current-weighted, worst hour",
+    "current-weighted, worst given part of the day",
+    "time mean, worst hour",
+    "time mean, worst given part of the day",
+    "mean stray current",
+    "mean rail potential, leakage up to {leakage} S/km",
+    "leakage conductance",
+    "utilisation of {kind}",
+    "utilisation of devices",
+    "peak of feeders, of the setting of the breaker",
+    "highest demand of a quarter of an hour",
+    "lateness at calls",
+    "trips of breakers",
+    "trains that stand for good",
+    "trains without a voltage for longer than they coast",
+    "trains that do not end their run though they do in the base case",
+    "loads without a voltage while they should take something",
+    "time in which nothing at all is fed",
+    "study",
+    "contract of the inputs",
+    "contracts of the inputs",
+    "settings of the inputs",
+)
+"""Names of verdicts, and sources of limits that a study sets itself."""
+
+FAILURES = (
+    "low voltage", "high voltage", "useful voltage", "overload", "contract", "breaker", "late trains", "tripped breakers",
+    "stuck trains", "trains without voltage", "unfinished trains", "loads without voltage", "nothing fed",
+)  # fmt: skip
+"""What a case violates, in a word."""
+
+PLACES = (
+    "train {train}",
+    "train {train}, track {track}, km {km}",
+    "train {train}, from track {track}, km {km}",
+    "train {train}, {section}",
+    "track {track}, km {km}",
+    "tracks {tracks}, km {km}",
+    "load {load}",
+    "load {load}, track {track}, km {km}",
+    "substation {substation}",
+    "section cabin {cabin}",
+    "feeder {feeder}",
+    "switch {switch}",
+    "zone {zone}",
+    "supply point {point}",
+    "earthing {device}",
+    "voltage-limiting device {device}",
+    "{device}, whole run",
+    "{case}, grid low",
+    "{case}, grid high",
+    "{case}: km {km}",
+    "{case}: track {track}, km {km}",
+)
+"""Where something was found."""
+
+EVENTS = (
+    "{begin} to {end}: the demand cannot be served, first at {subject} (track {track}, km {km}); {share} % of all demand can be,"
+    " and is computed",
+    "{begin} to {end}: a node balances within {value} A only; the best solution found is given",
+    "{begin} to {end}: rectifiers block, the busbar is at up to {value} V, above {limit} V without load",
+    "{begin} to {end}: down to {value} V, below {limit} V",
+    "{begin} to {end}: up to {value} V, above {limit} V",
+    "{begin} to {end}: tractive effort limited by {reasons}, down to {value} V",
+    "{begin} to {end}: auxiliaries limited by {reasons}, down to {value} V",
+    "the contact line is dead: neither traction nor auxiliaries",
+    "comes to a stand on track {track}, km {km}: the contact line is dead, {seconds} s after the voltage was lost",
+    "the contact line has voltage again, after {seconds} s",
+    "{before} motors in series become {after}",
+    "comes onto the line",
+    "leaves the line",
+    "stops at {station}",
+    "departs from {station}",
+    "{what}: {value} {unit} at {place}, may last {limit} s ({name}: {volts} V)",
+    "{what}: {value} {unit}, may last {limit} s ({name}: {volts} V)",
+    "{what}: {value} {unit} at {place}, {name} is {limit} {limit_unit}",
+    "{what}: {value} {unit}, {name} is {limit} {limit_unit}",
+    "{count} rectifier units in service from now on",
+    "feeds nothing: none of its return feeders is closed",
+    "{state}, by itself after a trip",
+    "{state}, by itself",
+    "trips at {value} A, above {limit} A; stays open",
+    "trips at {value} A, above {limit} A; stays open, since it has closed by itself as often as it may",
+    "trips at {value} A, above {limit} A; closes by itself after {seconds} s (number {number})",
+    "closes: the rail potential is {value} V, above {limit} V",
+    "nothing feeds the contact line from km {begin} to km {end}",
+    "the contact line is fed again from km {begin} to km {end}, after {seconds} s",
+)
+"""Messages of events."""
+
+NOTES = (
+    "trains take the currents of a constant voltage: the voltages that these cause do not limit them",
+    "without voltage for up to {seconds} s: {trains}",
+    "on a dead contact line at the end: {trains}",
+    "stuck, since effort or power lack: {trains}",
+    "trains {trains}",
+    "trains do not see each other; these overlap: {pairs}",
+    "trains do not see each other; these overlap: {pairs} and {count} more pairs",
+    "{first} and {second} ({time}, track {track}, km {km}, {count} steps)",
+    "windows longer than what counts of the run, {seconds} s, are held against the whole of it: {windows}",
+    "without a rating, not judged: {devices}",
+    "held against recalled values, which the user may replace: {kinds}",
+    "{count} steps did not converge or could not be served",
+    "the electric ledger does not close",
+    "same inputs as case {case}",
+    "{reason}; same inputs as case {case}",
+)
+"""Notes of a run, of ratings and of cases."""
+
+DEVICES = tuple(
+    f"{{count}} {words}"
+    for words in (
+        "rectifier unit", "rectifier units", "substation", "substations", "feeder", "feeders", "return feeder", "return feeders",
+        "feeder of section cabins", "feeders of section cabins", "switch", "switches", "section of contact line",
+        "sections of contact line", "section of rails", "sections of rails",
+    )
+)  # fmt: skip
+"""So many devices of a kind."""
+
+RATINGS = (
+    "no rating given",
+    "no unit is in service",
+    "no rating given: neither rated_current_a nor unit",
+    "no rating given; the conductors table has none for cable {cable}",
+    "no rating given; its wires are not known",
+    "no rating given; diameter_mm or highest_c of wire {wire} is not known",
+    "no rating given; the limits table lacks the weather of wires",
+    "no rating: the limits table lacks {name}",
+    "rated_current_a of substation {substation}",
+    "unit {unit}: {source}",
+    "{units} x {current} A, {in_service} of {all} units in service; {source}",
+    "no duty class: taken to bear no overload",
+    "class {name}: {source}",
+    "rated_current_a of feeder {feeder}",
+    "{count} x {current} A, cable {cable}: {source}",
+    "feeder_rated_current_a of {station}",
+    "return_rated_current_a of {station}",
+    "rated_current_a of the contact line",
+    "heat balance of its wires, {wire} at its highest temperature; air {air} °C, wind {wind} m/s, sun {sun} W/m²",
+    "heat balance of its wires, {wire} at its highest temperature; air {air} °C, wind {wind} m/s, sun {sun} W/m²: it may carry"
+    " nothing",
+    "rated_current_a of the return circuit",
+    "{tracks} x {current} A, rail {rail}: {source}",
+    "whole run",
+    "below U_min2",
+    "U_min2 to U_min1",
+    "U_min1 to U_n",
+    "U_n to U_max1",
+    "U_max1 to U_max2",
+    "above U_max2",
+)
+"""Where ratings come from, and bands of voltages."""
+
+TIMETABLE = (
+    "has no call with a planned time: no verdict on delays; {running}",
+    "nothing of its run lies within the time that counts",
+    "on time",
+    "on time, with {seconds} s of reserve left at {station}",
+    "on time; the clock ends before its planned time at {station}",
+    "on time, with {seconds} s of reserve left at {station}; the clock ends before its planned time at {next}",
+    "late {seconds} s at {station}",
+    "late {seconds} s at {station}: {parts}",
+    "{seconds} s to train current limits",
+    "{seconds} s to driving that is not flat out",
+    "{seconds} s at stops and turn-rounds",
+    "{seconds} s to a timetable that gives too little time",
+    "{seconds} s lost to low voltage",
+    "{seconds} s lost to low voltage between km {begin} and {end}",
+    "{seconds} s lost to low voltage between km {begin} and {end} (area {area})",
+    "{seconds} s lost to low voltage (area {area})",
+    "{seconds} s lost to low voltage (area {area}; of {all} s lost there its reserve takes up the rest)",
+    "{seconds} s lost to low voltage between km {begin} and {end} (area {area}; of {all} s lost there its reserve takes up the"
+    " rest)",
+    "stuck on track {track} at km {km}, since effort or power lack",
+    "does not enter",
+    "on track {track} at km {km} when the clock ends",
+    "{where}: not at {station}, planned {time}, {seconds} s before the end of the run",
+    "alone at nominal voltage it runs {seconds} s, low voltage costs it nothing",
+    "alone at nominal voltage it runs {seconds} s, low voltage costs it {lost} s",
+    "alone at nominal voltage it runs {seconds} s, higher voltage saves it {saved} s",
+)
+"""Why a timetable holds for a train, or does not."""
+
+REMEDIES = (
+    "Train {train} runs {seconds} s later, all its planned times with it.",
+    "Train {train} runs {seconds} s earlier, all its planned times with it.",
+    "Train {train} runs {seconds} s later, all its planned times with it; so do {others}.",
+    "Train {train} runs {seconds} s earlier, all its planned times with it; so do {others}.",
+    "Service {service} runs {seconds} s later, all its planned times with it.",
+    "Service {service} runs {seconds} s earlier, all its planned times with it.",
+    "{who}: current capped to {value} A, {percent} % below the greatest in the run.",
+    "{who}: current capped, {percent} % below the greatest in the run.",
+    "{who}: power capped to {value} kW, {percent} % below the greatest in the run.",
+    "{who}: power capped, {percent} % below the greatest in the run.",
+    "Train {train}",
+    "Service {service}",
+    "Trains of type {type}",
+    "Category {category}",
+    "service {service}",
+    "trains of type {type}",
+    "category {category}",
+    "late trains",
+    "Service {service}: a run every {seconds} s, {runs} in place of {before}.",
+    "{train} is planned up to {seconds} s later, where the time is lost.",
+    "{trains} are planned up to {seconds} s later, where the time is lost.",
+    "Train {train} is driven with {percent} % of reserve.",
+    "Service {service} is driven with {percent} % of reserve.",
+    "The timetable holds as it is; nothing was searched.",
+    "The search was ended by {reason}.",
+    "The search was ended by {reason}; what it had found by then is told.",
+    "its wall time, {seconds} s",
+    "Ctrl-C",
+    "What saves the part of the clock around the late trains does not save the whole: searched again.",
+    "Late even alone at nominal voltage, since the timetable gives less than running, dwells and turn-rounds need: {trains}. No"
+    " change of supply or of other trains helps them; only later planned times were searched.",
+    "Not tried, since they are not running when all of the late trains are: {names}.",
+    "Not tried, beyond most_runs of {count}: {names}.",
+    "Smallest means cheapest. Points by the study's bounds of the search: {shift} for each second and train of a departure shift,"
+    " {reserve} for each second and train of later planned times, {current} for each percent and train of a cap on current and"
+    " {power} on power, {headway} for each second and run of a larger headway, {driving} for each percent and train of a driving"
+    " plan with reserve.",
+    "no load voltage",
+    "internal resistance",
+    "in service",
+    "{count} units in place of {before}",
+    "{state} to in_service",
+    "{state} to closed",
+)
+"""Changes that make a timetable feasible, and notes of the search for them."""
+
+SIZING = (
+    "all limits are kept with less",
+    "{count} rectifier unit",
+    "units of {substation}",
+    "cables of {feeder}",
+    "contact line {number} of track {track}",
+    "contact line {number} of tracks {tracks}",
+    "{device} at {percent} % of its rating, {allowed} % are allowed",
+    "the run is {status}: {reason}",
+    "{what} {value} {unit} ({place}) against {limit} {limit_unit}",
+)
+"""What the search for the least equipment tells."""
+
+OUTAGES = (
+    "{contained} pairs: one outage contains the other",
+    "{contrary} pairs: they move a device to different states, or one opens what the other bypasses",
+    "{grid} grid voltage: left out, for the limits table has no row {name}",
+    "{grid} grid voltage: left out, for it is the normal one",
+    "{name}: none is in service",
+    "{name}: its reserve feeds at once, so nothing changes",
+    "{name}: it is open already",
+    "{name}: nothing feeds it",
+    "{name}: it is {state} already",
+    "{count} of {all} in service",
+    "{count} of {all} in service, reserve after {seconds} s",
+    "{name}: out from {time}, when its units carry most over {lasts} with nothing out, by the root mean square; its reserve feeds"
+    " {again} later",
+    "{name}: out from {time}, as contingency.begins says; its reserve feeds {again} later",
+)
+"""Notes of a study of outages, and how its outages are called."""
+
+COMPARE = (
+    "{folder}: the run is {status}",
+    "of unknown status",
+    "{folder} is of another study, {study} and not {base}",
+    "only one of {base} and {folder} holds many cases: their figures differ in kind",
+    "{folder}: which inputs differ is not known, they are not kept with the results",
+    "{folder}: no input differs from {base}",
+    "{folder} was computed by version {version} of tractionpower, {base} by {base_version}",
+)
+"""Notes of a comparison."""
+
+TOGETHER = ("{first}; {second}", "{first}, {second}", "{first} and {second}", "{first}: {second}", "{first} + {second}")
+"""How parts stand together that are looked up one by one."""
+
+SENTENCES: tuple[str, ...] = (
+    *FIGURES, *DEFINITIONS, *VERDICTS, *FAILURES, *PLACES, *EVENTS, *NOTES, *DEVICES, *RATINGS, *TIMETABLE, *REMEDIES, *SIZING,
+    *OUTAGES, *COMPARE, *TOGETHER,
+)  # fmt: skip
+"""All of them."""

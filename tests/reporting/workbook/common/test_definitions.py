@@ -1,6 +1,7 @@
 from fake_results import changed
 from read_workbook import read_table
 
+from tractionpower.reporting.workbook.common import definitions
 from tractionpower.results.columns import TABLES
 
 
@@ -30,7 +31,7 @@ def test_a_definition_tells_of_what_and_by_which_standard(small):
     assert rows["source_energy_kwh"]["of"] == "the whole run"
 
 
-def test_results_without_figures_have_no_sheet_for_them(case, write):
+def test_results_without_figures_have_no_sheet_for_them(case, sheets):
     results, scenario = case
     bare = type(results)(changed(results).run, [], results._source)
-    assert "Definitions" not in write(bare, scenario).sheetnames
+    assert "Definitions" not in sheets(definitions, bare, scenario).sheetnames

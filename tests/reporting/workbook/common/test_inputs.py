@@ -9,6 +9,7 @@ from read_workbook import read_table, texts
 from tractionpower.model.line import Station
 from tractionpower.model.supply import Substation
 from tractionpower.model.vehicle import Vehicle
+from tractionpower.reporting.workbook.common import inputs
 from tractionpower.reporting.workbook.common.declared import choices, declared, flat, in_words
 from tractionpower.reporting.workbook.common.inputs import used_limits
 from tractionpower.reporting.workbook.frame.facts import Facts
@@ -54,16 +55,16 @@ def test_the_study_tells_clock_and_coupling_and_what_is_default(small):
     assert rows["warm up"] == ("–", "left out")
 
 
-def test_settings_are_those_that_act_in_such_a_run(case, write):
+def test_settings_are_those_that_act_in_such_a_run(case, sheets):
     results, scenario = case
-    plain = texts(write(results, scenario)["Inputs study"])
+    plain = texts(sheets(inputs, results, scenario)["Inputs study"])
     assert "Mean useful voltage" in plain
     assert not {"Outages", "Ratings and mean useful voltage", "Verdict on the timetable"} & {*plain}
-    rated = texts(write(sized(results, scenario), scenario)["Inputs study"])
+    rated = texts(sheets(inputs, sized(results, scenario), scenario)["Inputs study"])
     assert "Ratings and mean useful voltage" in rated
     assert "Search for the least equipment" not in rated
     assert not any(text.startswith("search: ") for text in rated)
-    many = texts(write(outages(scenario), scenario)["Inputs study"])
+    many = texts(sheets(inputs, outages(scenario), scenario)["Inputs study"])
     assert {"Outages", "Verdict on the timetable"} <= {*many}
 
 
@@ -95,7 +96,7 @@ def test_every_figure_of_a_vehicle_stands_beside_its_default(small, case):
     assert given == set(rows)
 
 
-def test_points_of_curves_are_all_there(write):
+def test_points_of_curves_are_all_there(sheets):
     made = small_run()
     drive = {
         "kind": "table",
@@ -107,7 +108,7 @@ def test_points_of_curves_are_all_there(write):
         if vehicle["drive"]:
             vehicle["drive"] = drive
     scenario = made.scenario.model_copy(update={"vehicles": tuple(Vehicle.model_validate(each) for each in vehicles)})
-    sheet = write(made.results, scenario)["Inputs vehicles"]
+    sheet = sheets(inputs, made.results, scenario)["Inputs vehicles"]
     rows = [row for row in _table_below(sheet, "Effort") if row["vehicle"] == vehicles[0]["id"]]
     assert [(row["speed [km/h]"], row["effort [kN]"]) for row in rows] == [(0, 200), (100, 50)]
     shown = {row["quantity"]: row for row in read_table(sheet, 1)}
@@ -120,14 +121,14 @@ def test_the_timetable_has_every_run(small, case):
     assert (rows[1]["start"], rows[1]["from"], rows[1]["route"]) == (22050.0, "Łódź Bravo", "track 2, km 40 to 0")
 
 
-def test_shortest_dwells_are_listed_where_there_are_any(small, case, write):
+def test_shortest_dwells_are_listed_where_there_are_any(small, case, sheets):
     results, scenario = case
     assert "Shortest dwells" not in texts(small["Inputs timetable"])
     runs = scenario.timetable.trains
     call = runs[1].calls[1].model_copy(update={"min_dwell_s": 45.0})
     held = runs[1].model_copy(update={"calls": (runs[1].calls[0], call)})
     timetable = scenario.timetable.model_copy(update={"trains": (runs[0], held, *runs[2:])})
-    sheet = write(results, scenario.model_copy(update={"timetable": timetable}))["Inputs timetable"]
+    sheet = sheets(inputs, results, scenario.model_copy(update={"timetable": timetable}))["Inputs timetable"]
     (row,) = _table_below(sheet, "Shortest dwells")
     assert row == {"train run": held.id, "station": "Alfa", "shortest dwell [s]": 45}
 
@@ -136,7 +137,7 @@ def test_the_source_of_the_line_is_told(small):
     assert "Source: made by hand" in texts(small["Inputs line"])
 
 
-def test_limits_are_those_that_act_and_tell_whose_they_are(case, write):
+def test_limits_are_those_that_act_and_tell_whose_they_are(case, sheets):
     results, scenario = case
     own = tuple(
         limit.model_copy(update={"value": 2100.0, "status": "user"})
@@ -145,7 +146,7 @@ def test_limits_are_those_that_act_and_tell_whose_they_are(case, write):
         for limit in scenario.limits
     )
     changed_limits = scenario.model_copy(update={"limits": own})
-    rows = {row["name"]: row for row in read_table(write(results, changed_limits)["Inputs limits"])}
+    rows = {row["name"]: row for row in read_table(sheets(inputs, results, changed_limits)["Inputs limits"])}
     assert set(rows) == {limit.name for limit in own if limit.system == "dc3000"}
     assert (rows["u_min2"]["value"], rows["u_min2"]["given / default"], rows["u_min2"]["status"]) == (
         2100,
@@ -156,9 +157,14 @@ def test_limits_are_those_that_act_and_tell_whose_they_are(case, write):
 
 
 @pytest.mark.parametrize(
-    ("run", "prefixes"), [({}, set()), ({"return_circuit": {"places": 3}}, {"touch", "stray"}), ({"kind": "size"}, {"window", "wire"}),
-                          ({"kind": "contingency"}, {"window", "wire", "grid"})],
-)  # fmt: skip
+    ("run", "prefixes"),
+    [
+        ({}, set()),
+        ({"return_circuit": {"places": 3}}, {"touch", "stray"}),
+        ({"kind": "size"}, {"window", "wire"}),
+        ({"kind": "contingency"}, {"window", "wire", "grid"}),
+    ],
+)
 def test_limits_of_all_systems_are_told_where_they_act(case, run, prefixes):
     results, scenario = case
     used = used_limits(Facts(changed(results, **run), scenario))
