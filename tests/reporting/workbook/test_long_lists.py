@@ -10,10 +10,10 @@ def profile(count):
 
 
 def test_a_short_profile_is_told_row_by_row():
-    assert in_words(profile(2)) == "time 00:00:00, power kw 0; time 00:01:00, power kw 10"
+    assert in_words(profile(2)) == "time 00:00:00, power 0 kW; time 00:01:00, power 10 kW"
 
 
 def test_a_long_profile_is_told_by_its_ends():
     count = MOST_IN_CELL + 1
-    last = f"time 00:{count - 1:02d}:00, power kw {10 * (count - 1)}"
-    assert in_words(profile(count)) == f"{count} rows, from time 00:00:00, power kw 0 to {last}"
+    last = f"time 00:{count - 1:02d}:00, power {10 * (count - 1)} kW"
+    assert in_words(profile(count)) == f"{count} rows, from time 00:00:00, power 0 kW to {last}"

@@ -101,7 +101,7 @@ def in_words(value: Any, words: frozenset[str] = frozenset()) -> Any:
     """
     if isinstance(value, BaseModel):
         parts = [field for field in declared(value) if field.value is not None and field.value != ""]
-        told: Any = ", ".join(f"{words_of(field.name)} {in_words(field.value, field.words)}" for field in parts)
+        told: Any = ", ".join(map(_part_in_words, parts))
     elif isinstance(value, dict):
         told = "; ".join(f"{key}: {in_words(part)}" for key, part in value.items())
     elif isinstance(value, tuple | list):
@@ -113,6 +113,12 @@ def in_words(value: Any, words: frozenset[str] = frozenset()) -> Any:
     else:
         told = recorded(value.replace("_", " ")) if isinstance(value, str) and value in words else value
     return told
+
+
+def _part_in_words(field: Declared) -> str:
+    """Return name, value and unit of a field in a sentence."""
+    unit = Quantity(field.name, "").unit if _is_number(field.value) and words_of(field.name) != field.name else ""
+    return f"{words_of(field.name)} {in_words(field.value, field.words)} {unit}".strip()
 
 
 def _list_in_words(values: Sequence[Any], words: frozenset[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -201,9 +202,9 @@ def _parts(name: str, ledger: dict[str, Any]) -> list[tuple[Any, ...]]:
 
 def _sum(name: str, ledger: dict[str, Any], rows: list[tuple[Any, ...]], parts: Block, area: tuple[int, int]) -> tuple[Any, ...]:
     """Return the row of a ledger in the table of sums; its parts stand in the rows `area`."""
-    given, spent = (sum(row[k] for row in rows if row[k] is not None) for k in (1, 2))
+    given, spent = (math.fsum(row[k] for row in rows if row[k] is not None) for k in (1, 2))
     cells = [f"{parts.cell(key, area[0])}:{parts.cell(key, area[1])}" for key in ("given", "spent")]
-    gap = given - spent
+    gap = round(given - spent, 6) + 0.0  # sums differ in their last digits from program to program
     share = abs(gap) / given if given else 0.0
     allowed = _SHARES.get(name, MECHANICAL_SHARE)
     if name == "electric":
@@ -217,7 +218,7 @@ def _sum(name: str, ledger: dict[str, Any], rows: list[tuple[Any, ...]], parts: 
         tr(LEDGERS[name][0]),
         Formula(f"SUM({cells[0]})", given),
         Formula(f"SUM({cells[1]})", spent),
-        Formula("{given}-{spent}", gap),
+        Formula("ROUND({given}-{spent},6)", gap),
         Formula("IF({given}=0,0,ABS({gap})/ABS({given}))", share),
         Formula(f'IF({{share}}<={allowed:g},"{words[0]}","{words[1]}")', words[0] if share <= allowed else words[1]),
         worst,
