@@ -37,6 +37,10 @@ TRAIN_FIGURES = {
     "late_at_end_s": 20.0,
     "mean_useful_voltage_current_weighted_v": 2950.0,
     "mean_useful_voltage_time_mean_v": 3010.0,
+    "highest_pantograph_voltage_v": 3500.0,
+    "mean_pantograph_voltage_v": 3200.0,
+    "useful_charge_ah": 110.0,
+    "time_of_useful_steps_s": 900.0,
 }
 
 SUBSTATION_FIGURES = {
@@ -218,7 +222,10 @@ def _events(names: list[str]) -> pa.Table:
 def _figures(names: list[str], stations: list[str], rng: np.random.Generator) -> list[dict[str, Any]]:
     figures = [_figure("lowest_voltage_v", 2612.34), _figure("source_energy_kwh", 2000.125)]
     for place in (f"train {name}" for name in names):
-        figures += [_figure(name, value * float(rng.uniform(0.7, 1.2)), place) for name, value in TRAIN_FIGURES.items()]
+        own = {name: value * float(rng.uniform(0.7, 1.2)) for name, value in TRAIN_FIGURES.items()}
+        own["useful_energy_kwh"] = own["mean_useful_voltage_current_weighted_v"] * own["useful_charge_ah"] / 1000.0
+        own["voltage_of_useful_steps_vs"] = own["mean_useful_voltage_time_mean_v"] * own["time_of_useful_steps_s"]
+        figures += [_figure(name, value, place) for name, value in own.items()]
     for place in (f"substation {name}" for name in stations):
         figures += [_figure(name, value * float(rng.uniform(0.7, 1.2)), place) for name, value in SUBSTATION_FIGURES.items()]
     for name in ("mean_useful_voltage_current_weighted_v", "mean_useful_voltage_time_mean_v"):

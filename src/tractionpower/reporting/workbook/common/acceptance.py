@@ -135,7 +135,7 @@ def add(book: Book) -> None:
 def accepted_rows(book: Book) -> list[Accepted]:
     """Return the rows: verdicts of the run, a sheet's row in the place of each that it tells, then those of sheets alone."""
     own = list(book.acceptance)
-    rows = [_taken(own, row) for row in map(_accepted, book.facts.verdicts)]
+    rows = [_taken(own, row) for row in map(accepted_of, book.facts.verdicts)]
     rows += own
     order = {name: number for number, name in enumerate(dict.fromkeys(map(group_of, rows)))}
     return sorted(rows, key=lambda row: order[group_of(row)])
@@ -172,7 +172,7 @@ def colour_words(sheet: Any, area: str) -> None:
         sheet.conditional_formatting.add(area, CellIsRule(operator="equal", formula=[f'"{tr(word)}"'], fill=fill(colour)))
 
 
-def _accepted(verdict: dict[str, Any]) -> Accepted:
+def accepted_of(verdict: dict[str, Any]) -> Accepted:
     """Return the row of a verdict of ``run.json``."""
     limit, unit = str(verdict["limit"] or ""), str(verdict["unit"] or "")
     place, time, status, source = (str(verdict[key] or "") for key in ("place", "time", "status", "source"))

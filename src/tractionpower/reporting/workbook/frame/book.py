@@ -15,6 +15,7 @@ from tractionpower.reporting.workbook.frame.cells import Styles, shorten
 from tractionpower.reporting.workbook.frame.facts import Facts, Subject
 from tractionpower.reporting.workbook.frame.formulas import Formula, Names
 from tractionpower.reporting.workbook.frame.page import Page
+from tractionpower.reporting.workbook.frame.rules import Rule
 
 if TYPE_CHECKING:
     from tractionpower.reporting.workbook.common.acceptance import Accepted
@@ -49,6 +50,8 @@ class Book:
         self._single: list[Page] = []
         self.acceptance: list[Accepted] = []
         """What the sheets judge, for the sheet of acceptance."""
+        self.rules: list[Rule] = []
+        """Conditional formats that refer to named cells."""
         self.cached: dict[str, dict[str, Any]] = {}
         """Values of the formulas by sheet and cell, once the book is finished."""
 
@@ -97,6 +100,8 @@ class Book:
         self.workbook._sheets = [page.sheet for page in self.pages]
         self.workbook.active = 0
         self._write_formulas()
+        for rule in self.rules:
+            rule.write(self.names)
         self.names.write(self.workbook)
         self._describe()
 

@@ -10,7 +10,6 @@ from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
 from tractionpower.reporting.workbook.run import (
-    calls,
     charts,
     energy,
     events,
@@ -19,7 +18,10 @@ from tractionpower.reporting.workbook.run import (
     key_figures,
     return_circuit,
     substations,
+    timetable,
     trains,
+    units,
+    voltages,
 )
 from tractionpower.reporting.workbook.sizing import device_loads, peaks, ratings, useful_voltage
 from tractionpower.results.results import Results
@@ -33,7 +35,9 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
         add(book)
     for add in (ratings.add, peaks.add, device_loads.add, useful_voltage.add):
         add(book)
-    for add in (trains.add, calls.add, substations.add, feeders.add, return_circuit.add, energy.add, key_figures.add):
+    for add in (timetable.add, trains.add, voltages.add, substations.add, units.add, feeders.add, return_circuit.add):
+        add(book)
+    for add in (energy.add, key_figures.add):
         add(book)
     charted = book.page("Charts", "Charts")
     drawn = extracts.add(book)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pandas as pd
 
+from tractionpower.reporting.texts import recorded, tr
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.page import Column, heading_of
+from tractionpower.reporting.workbook.frame.page import Column
 
 MOST = 2000
 """Rows of the list."""
@@ -15,14 +16,15 @@ ROUTINE = ("stop", "departure", "train_entered", "train_left", "regrouped", "swi
 
 _COLUMNS = (
     Column("time of day", "time"),
-    Column("kind"),
-    Column("subject", widest=26),
-    Column("track"),
-    Column(heading_of("position_km"), "0.000"),
+    Column("event", widest=24),
+    Column("train or device", widest=26),
+    Column("track", widest=10),
+    Column("place [km]", "0.000"),
     Column("value", "0.0"),
     Column("limit", "0.0"),
-    Column("in words", widest=100),
+    Column("in words", widest=90),
 )
+_COUNTS = (Column("event", widest=24), Column("how many", "0"), Column("of them in the list", "0"))
 _FIELDS = ("time_s", "kind", "subject", "track", "position_km", "value", "limit", "message")
 
 
@@ -33,13 +35,27 @@ def add(book: Book) -> None:
         return
     page = book.page("Events", "Events")
     kinds = frame["kind"].astype(str)
-    counts = kinds.value_counts().sort_index()
-    page.note("Number of events: " + ", ".join(f"{str(kind).replace('_', ' ')} {count}" for kind, count in counts.items()) + ".")
-    if len(frame) > MOST:
-        page.note(f"The list shows {MOST} of {len(frame)} events, routine ones left out first; table events has all of them.")
-        frame = _most_telling(frame, kinds)
-    rows = ([getattr(event, name) for name in _FIELDS] for event in frame.itertuples(index=False))
-    page.table(_COLUMNS, ([row[0], str(row[1]).replace("_", " "), *row[2:]] for row in rows), frozen=True)
+    shown = frame if len(frame) <= MOST else _most_telling(frame, kinds)
+    if len(shown) < len(frame):
+        page.note(
+            tr(
+                "The list shows {shown} of {all} events, routine ones left out first; table events has all of them.",
+                shown=len(shown),
+                all=len(frame),
+            )
+        )
+    listed = shown["kind"].astype(str).value_counts()
+    page.section("How many of each kind")
+    page.table(
+        _COUNTS, ((_kind(kind), count, int(listed.get(kind, 0))) for kind, count in kinds.value_counts().sort_index().items())
+    )
+    page.section("List")
+    rows = ([getattr(event, name) for name in _FIELDS] for event in shown.itertuples(index=False))
+    page.table(_COLUMNS, ([row[0], _kind(row[1]), *row[2:7], recorded(str(row[7] or ""))] for row in rows), frozen=True)
+
+
+def _kind(kind: object) -> str:
+    return recorded(str(kind).replace("_", " "))
 
 
 def _most_telling(frame: pd.DataFrame, kinds: pd.Series[str]) -> pd.DataFrame:

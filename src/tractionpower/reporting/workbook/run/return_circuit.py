@@ -9,9 +9,11 @@ import pandas as pd
 
 from tractionpower.model.base import parse_time
 from tractionpower.reporting.facts.places import told
-from tractionpower.reporting.workbook.common.acceptance import OPEN, colour_verdicts, verdict_word
+from tractionpower.reporting.texts import mark, recorded, tr
+from tractionpower.reporting.workbook.common.acceptance import MET, OPEN, VIOLATED, colour_verdicts, verdict_word
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
+from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page, heading_of
 from tractionpower.reporting.workbook.frame.plots import COLOURS, Line, draw, scatter
 from tractionpower.results.stray import FORMATIONS
@@ -19,8 +21,9 @@ from tractionpower.results.stray import FORMATIONS
 MOST_DRAWN = 3
 """Return conductors in the chart."""
 
-PLACE, TRACK = "place [km]", "track"
+PLACE, TRACK = mark("place [km]"), mark("track")
 _POTENTIALS = ("lowest_potential_v", "mean_potential_v", "highest_potential_v")
+_WHICH = dict(zip(_POTENTIALS, (mark("lowest"), mark("mean"), mark("highest")), strict=True))
 _PROFILE = {
     **dict.fromkeys(_POTENTIALS, "0.0"),
     "mean_leakage_a_per_km": "0.000",
@@ -30,8 +33,8 @@ _PROFILE = {
     "length_km": "0.000",
 }
 _JUDGED = (
-    Column("name of the limit", widest=20),
-    Column("verdict"),
+    Column("name of the limit", "beside", 20),
+    Column("verdict", widest=14, key="verdict"),
     Column("status of the limit", widest=24),
     Column("source of the limit", widest=44),
 )
@@ -45,6 +48,7 @@ _FIGURES = (
     "highest_leaked_current_a",
     "leaked_charge_ah",
 )
+_KINDS = {"earthing": mark("earthing"), "voltage-limiting device": mark("voltage-limiting device")}
 _DEVICE = {
     "highest_current_into_earth_a": "0.0",
     "lowest_current_into_earth_a": "0.0",
@@ -82,16 +86,28 @@ def add(book: Book) -> None:
 def _key_figures(page: Page, facts: Facts) -> None:
     page.section("Whole run")
     columns = (
-        Column("figure", widest=40), Column("value", "0.00"), Column("unit"), Column("time of day", "time"),
-        Column("place", widest=36),
+        Column("figure", widest=40), Column("value", "0.00"), Column("unit", "beside", 8), Column("time of day", "time"),
+        Column("place", "beside", 36),
     )  # fmt: skip
     found = [f for name in _FIGURES for f in facts.results.key_figures if f["name"] == name]
-    rows = [(heading_of(f["name"]).split(" [")[0], f["value"], f["unit"], parse_time(f["time"] or ""), f["place"]) for f in found]
+    rows = [
+        (heading_of(f["name"]).split(" [")[0], f["value"], f["unit"], parse_time(f["time"] or ""), recorded(f["place"] or ""))
+        for f in found
+    ]
     page.table(columns, rows)
 
 
-def _judged(row: dict[str, Any]) -> tuple[str, str, str]:
-    return verdict_word(row), KNOWN_AS.get(row["status"], row["status"]), row["source"]
+def _judged(row: dict[str, Any], found: float | None, limit: float | None) -> tuple[Formula | str, str, str]:
+    """Return the verdict, which follows the limit where numbers decide, and how the limit is known."""
+    word: Formula | str = verdict_word(row)
+    if row["met"] is not None and found is not None and limit is not None and (found <= limit) == row["met"]:
+        word = Formula(f'IF({{found}}<={{limit}},"{tr(MET)}","{tr(VIOLATED)}")', word)
+    return word, tr(KNOWN_AS.get(row["status"], row["status"])), recorded(row["source"])
+
+
+def _limit(name: str, value: float | None) -> Formula | float | None:
+    """Return a limit as that of the sheet of acceptance, which can be edited there."""
+    return None if value is None else Formula(f"{{{name}}}", value)
 
 
 def _touch(page: Page, rows: Sequence[dict[str, Any]]) -> None:
@@ -103,9 +119,9 @@ def _touch(page: Page, rows: Sequence[dict[str, Any]]) -> None:
     columns = (
         Column("limit", widest=40),
         Column("above [V]", "0"),
-        Column("longest spell [s]", "0.0"),
-        Column("may last [s]", "0.0"),
-        Column("place", widest=36),
+        Column("longest spell [s]", "0.0", key="found"),
+        Column("may last [s]", "0.0", key="limit"),
+        Column("place", "beside", 36),
         Column("begins at", "time"),
         *_JUDGED,
     )
@@ -113,8 +129,10 @@ def _touch(page: Page, rows: Sequence[dict[str, Any]]) -> None:
         columns,
         [
             (
-                row["meaning"], row["voltage_v"], row["longest_s"], row["may_last_s"], row["place"],
-                parse_time(row["time"] or ""), row["limit"], *_judged(row),
+                recorded(row["meaning"]), row["voltage_v"], row["longest_s"],
+                _limit(f"limit_{row['limit']}_s", row["may_last_s"]), recorded(row["place"] or ""),
+                parse_time(row["time"] or ""), row["limit"],
+                *_judged(row, row["longest_s"], row["may_last_s"]),
             )
             for row in rows
         ],
@@ -128,16 +146,18 @@ def _stray(page: Page, facts: Facts, rows: Sequence[dict[str, Any]]) -> None:
         return
     page.section("Stray current: what needs no further study")
     if any(row["met"] is None for row in rows):
-        page.note(f"The values hold for the mean of a day. This run is shorter ({_hours(facts)}): {OPEN}.")
+        page.note(
+            tr("The values hold for the mean of a day. This run is shorter ({time}): {open}.", time=_hours(facts), open=tr(OPEN))
+        )
     page.note(
         "Of a single track: the leakage of a conductor of several tracks is shared out to them. Steps in which current enters the"
         " rails count as zero in the stray current. The leakage conductance decides which mean potential a place is held against."
     )
     columns = (
         Column("what", widest=40),
-        Column("found", "0.00"),
-        Column("limit value", "0.0"),
-        Column("unit"),
+        Column("found", "0.00", key="found"),
+        Column("limit value", "0.0", key="limit"),
+        Column("unit", "beside", 8),
         Column("worst place", widest=36),
         Column("track formation"),
         *_JUDGED,
@@ -147,8 +167,9 @@ def _stray(page: Page, facts: Facts, rows: Sequence[dict[str, Any]]) -> None:
         columns,
         [
             (
-                row["name"], row["value"], row["limit_value"], row["unit"], row["place"], formations.get(row["limit"], ""),
-                row["limit"], *_judged(row),
+                recorded(row["name"]), row["value"], _limit(f"limit_{row['limit']}", row["limit_value"]), row["unit"],
+                recorded(row["place"] or ""), recorded(formations.get(row["limit"], "")), row["limit"],
+                *_judged(row, row["value"], row["limit_value"]),
             )
             for row in rows
         ],
@@ -159,7 +180,7 @@ def _stray(page: Page, facts: Facts, rows: Sequence[dict[str, Any]]) -> None:
 def _hours(facts: Facts) -> str:
     clock, run = facts.scenario.clock, facts.run
     minutes = round((run.get("steps", 0) * clock.step_s - (clock.warm_up or 0.0)) / 60.0)
-    return f"{minutes // 60} h {minutes % 60:02d} min"
+    return tr("{hours} h {minutes} min", hours=minutes // 60, minutes=f"{minutes % 60:02d}")
 
 
 def _devices(page: Page, facts: Facts) -> None:
@@ -181,7 +202,7 @@ def _devices(page: Page, facts: Facts) -> None:
     ]  # fmt: skip
     rows = []
     for place, name, track, km, ohm, busbar in (*earthed, *limiting):
-        kind = place.removesuffix(f" {name}") + (f", busbar of {busbar}" if busbar else "")
+        kind = tr(_KINDS[place.removesuffix(f" {name}")]) + (tr(", busbar of {substation}", substation=busbar) if busbar else "")
         rows.append([name, ohm, km, track, kind, *(facts.value(place, figure) for figure in _DEVICE)])
     page.table(columns, rows)
 
@@ -192,13 +213,20 @@ def _lumping(page: Page, lumping: dict[str, Any]) -> None:
     low, lumped = lumping["voltage_v"], lumping["lumped_voltage_v"]
     columns = (
         Column("train", widest=40),
-        Column("voltage [V]", "0.0"),
-        Column("with lumped rails [V]", "0.0"),
-        Column("error [V]", "0.0"),
+        Column("voltage [V]", "0.0", key="own"),
+        Column("with lumped rails [V]", "0.0", key="lumped"),
+        Column("error [V]", "0.0", key="error"),
         Column("largest error at any train or load [V]", "0.0"),
         Column("time of day", "time"),
     )
-    row = (lumping["train"], low, lumped, lumped - low, lumping["largest_difference_v"], parse_time(lumping["time"]))
+    row = (
+        lumping["train"],
+        low,
+        lumped,
+        Formula("{lumped}-{own}", lumped - low),
+        lumping["largest_difference_v"],
+        parse_time(lumping["time"]),
+    )
     page.table(columns, [row])
 
 
@@ -218,18 +246,19 @@ def _profile(book: Book, front: Page) -> None:
     lines = book.facts.lines.by_line(frame["track"].unique())
     for tracks in lines:
         front.new_page()
-        words = f", {told(tracks)}" if len(lines) > 1 else ""
-        front.chart(_chart(frame[frame["track"].isin(tracks)], block, f"Rail potential along the line{words}"))
+        title = tr("Rail potential along the line")
+        title = tr("{title}, {tracks}", title=title, tracks=told(tracks)) if len(lines) > 1 else title
+        front.chart(_chart(frame[frame["track"].isin(tracks)], block, title))
 
 
 def _chart(frame: pd.DataFrame, block: Block, title: str) -> Any:
     """Return a chart of highest, mean and lowest potential of the conductors with the highest ones, all of one line."""
-    chart = scatter(title, PLACE, "rail potential [V]")
+    chart = scatter(title, tr(PLACE), tr("rail potential [V]"))
     peak = frame[list(_POTENTIALS)].abs().max(axis=1).groupby(frame["track"]).max().sort_values(ascending=False)
     for track, colour in zip(peak.index[:MOST_DRAWN], COLOURS, strict=False):
         rows = frame.index[frame["track"] == track]
         for name, dashes in zip(reversed(_POTENTIALS), ("solid", "sysDash", "solid"), strict=True):
-            words = f"track {track}, {name.split('_')[0]}"
+            words = tr("track {track}, {which}", track=track, which=tr(_WHICH[name]))
             first, last = block.first + int(rows[0]), block.first + int(rows[-1])
             draw(chart, block, Line(words, PLACE, heading_of(name), first, last, colour, dashes))
     chart.x_axis.scaling.min, chart.x_axis.scaling.max = float(frame["km"].min()), float(frame["km"].max())
