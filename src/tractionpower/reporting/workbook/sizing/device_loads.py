@@ -54,6 +54,7 @@ def add(book: Book) -> None:
 
 def _durations(book: Book) -> None:
     rows = book.facts.table("load_duration")
+    rows = rows[rows["current_a"].notna()] if len(rows) else rows
     groups = [(words, own) for words, kinds in GROUPS if len(rows) and len(own := rows[rows["kind"].isin(kinds)])]
     if not groups:
         return
