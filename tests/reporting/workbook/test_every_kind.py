@@ -12,6 +12,7 @@ from openpyxl.chart import BarChart, Series
 from openpyxl.workbook.defined_name import DefinedName
 from openpyxl.worksheet.hyperlink import Hyperlink
 from openpyxl.worksheet.table import Table, TableColumn
+from read_workbook import read_table
 
 from tractionpower.model.report import Language, Report
 from tractionpower.reporting import texts
@@ -57,9 +58,21 @@ def wrong(books):
 
 
 @pytest.fixture(scope="module")
-def again(books, wrong):
+def edited(books):
+    """Return a copy of the first workbook in which a checker has moved two limits."""
+    path = books["run", "en"]
+    book = openpyxl.load_workbook(path)
+    for name, value in (("limit_u_min2", 2700.0), ("limit_u_max2", 4000.0)):
+        ((sheet, place),) = book.defined_names[name].destinations
+        book[sheet][place.replace("$", "")] = value
+    book.save(path.with_name("edited.xlsx"))
+    return path.with_name("edited.xlsx")
+
+
+@pytest.fixture(scope="module")
+def again(books, wrong, edited):
     """Return the same workbooks as LibreOffice has calculated them; it starts once for all."""
-    paths = [*books.values(), wrong[0]]
+    paths = [*books.values(), wrong[0], edited]
     return dict(zip(paths, recalculated(paths), strict=True))
 
 
@@ -99,6 +112,22 @@ def test_the_other_program_calculates_itself(books, wrong, again):
     (found,) = formulas_agree(path, again[path])
     assert found.startswith(place)
     assert "1234567" in found
+
+
+@needs_office
+def test_verdicts_cover_and_charts_follow_a_limit_that_is_edited(books, edited, again):
+    before, after = (openpyxl.load_workbook(path, data_only=True) for path in (books["run", "en"], again[edited]))
+    told = [{row[1]: row[8] for row in book["Acceptance"].iter_rows(min_row=9, values_only=True)} for book in (before, after)]
+    assert [verdicts["lowest voltage"] for verdicts in told] == ["met", "violated"]
+    assert [verdicts["highest voltage"] for verdicts in told] == ["violated", "met"]
+    violated = [{row[0]: row[1] for row in book["Cover"].iter_rows(values_only=True)}["Violated"] for book in (before, after)]
+    assert violated == ["highest voltage", "lowest voltage"]
+    limits = [{row["U_min2 [V]"] for row in read_table(book["Voltage profile"], 2)} for book in (before, after)]
+    assert limits == [{2000}, {2700}]
+    shares = [sum(row["share below U_min2 [%]"] for row in read_table(book["Voltage histogram"])) for book in (before, after)]
+    volts = make_kind("run", edited.parent, nasty=True)[0].table("trains")["voltage_v"]
+    assert shares == pytest.approx([0.0, 100.0 * (volts < 2700.0).mean()])
+    assert shares[1] > 0.0
 
 
 def test_what_excel_would_repair_is_found(tmp_path):
