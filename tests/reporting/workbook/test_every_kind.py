@@ -62,7 +62,7 @@ def edited(books):
     """Return a copy of the first workbook in which a checker has moved two limits."""
     path = books["run", "en"]
     book = openpyxl.load_workbook(path)
-    for name, value in (("limit_u_min2", 2700.0), ("limit_u_max2", 4000.0)):
+    for name, value in (("limit_u_min2", 2800.0), ("limit_u_max2", 4000.0)):
         ((sheet, place),) = book.defined_names[name].destinations
         book[sheet][place.replace("$", "")] = value
     book.save(path.with_name("edited.xlsx"))
@@ -123,10 +123,10 @@ def test_verdicts_cover_and_charts_follow_a_limit_that_is_edited(books, edited, 
     violated = [{row[0]: row[1] for row in book["Cover"].iter_rows(values_only=True)}["Violated"] for book in (before, after)]
     assert violated == ["highest voltage", "lowest voltage"]
     limits = [{row["U_min2 [V]"] for row in read_table(book["Voltage profile"], 2)} for book in (before, after)]
-    assert limits == [{2000}, {2700}]
+    assert limits == [{2000}, {2800}]
     shares = [sum(row["share below U_min2 [%]"] for row in read_table(book["Voltage histogram"])) for book in (before, after)]
     volts = make_kind("run", edited.parent, nasty=True)[0].table("trains")["voltage_v"]
-    assert shares == pytest.approx([0.0, 100.0 * (volts < 2700.0).mean()])
+    assert shares == pytest.approx([0.0, 100.0 * (volts < 2800.0).mean()])
     assert shares[1] > 0.0
 
 
