@@ -8,7 +8,7 @@ from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule
 
-from tractionpower.reporting.facts.outages import COMPUTED, Outages
+from tractionpower.reporting.facts.outages import COMPUTED, Failure, Outages
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.common.acceptance import Accepted
 from tractionpower.reporting.workbook.frame.book import Book
@@ -23,6 +23,13 @@ Case = Mapping[str, Any]
 
 NOT_COMPUTED = mark("not computed")
 GRID_WORDS = {"normal": mark("normal"), "low": mark("low"), "high": mark("high")}
+
+
+def grid_in_words(grid: object) -> str:
+    """Return the voltage of the feeding grid in a word."""
+    return tr(GRID_WORDS.get(str(grid), str(grid)))
+
+
 FIRST = (Column("what is out", widest=44), Column("grid voltage", "beside", 10))
 
 
@@ -41,7 +48,7 @@ class Sheet:
     columns
         Its columns; the key of one is the figure, a column of table ``cases``.
     changes
-        Figures whose difference from the case with nothing out stands beside them, with the format of that.
+        Figures whose difference from the case with nothing out stands beside them: its heading and format.
     """
 
     key: str
@@ -49,7 +56,7 @@ class Sheet:
     title: str
     note: str
     columns: tuple[Column, ...]
-    changes: Mapping[str, str]
+    changes: Mapping[str, tuple[str, str]]
 
 
 SHEETS = (
@@ -66,13 +73,13 @@ SHEETS = (
             Column("highest voltage [V]", "0", key="highest_voltage_v"),
             Column("longest above U_max1 [s]", "0", key="above_u_max1_s"),
             Column("useful voltage of zones, weighted by current [V]", "0", key="useful_zone_v"),
-            Column("zone", "beside", 24, key="useful_zone"),
+            Column("zone", "beside", 30, key="useful_zone"),
             Column("of zones, mean over time [V]", "0", key="useful_zone_time_mean_v"),
             Column("of trains, weighted by current [V]", "0", key="useful_train_v"),
             Column("train", "beside", 16, key="useful_train"),
             Column("of trains, mean over time [V]", "0", key="useful_train_time_mean_v"),
         ),
-        {"lowest_voltage_v": "0", "useful_zone_v": "0"},
+        {"lowest_voltage_v": (mark("lowest: change [V]"), "0"), "useful_zone_v": (mark("of zones: change [V]"), "0")},
     ),
     Sheet(
         "loads", mark("Outage loads"), mark("Loads and contracts in outages: every outage at every grid voltage"),
@@ -92,7 +99,11 @@ SHEETS = (
             Column("energy of the substations [kWh]", "0", key="energy_kwh"),
             Column("heat in lines [kWh]", "0", key="line_loss_kwh"),
         ),
-        {"utilisation_percent": "0.0", "highest_demand_kw": "0", "energy_kwh": "0", "line_loss_kwh": "0"},
+        {
+            "utilisation_percent": (mark("utilisation: change [%]"), "0.0"),
+            "highest_demand_kw": (mark("demand: change [kW]"), "0"),
+            "energy_kwh": (mark("energy: change [kWh]"), "0"), "line_loss_kwh": (mark("heat: change [kWh]"), "0"),
+        },
     ),
     Sheet(
         "served", mark("Outage trains"), mark("Trains and loads in outages: every outage at every grid voltage"),
@@ -110,7 +121,7 @@ SHEETS = (
             Column("for, all of them together [s]", "0", key="unserved_load_s"),
             Column("nothing fed at all for [s]", "0", key="blackout_s"),
         ),
-        {"worst_late_s": "0"},
+        {"worst_late_s": (mark("latest: change [s]"), "0")},
     ),
 )  # fmt: skip
 
@@ -191,7 +202,7 @@ def _columns(sheet: Sheet, shown: Sequence[Column]) -> list[Column]:
     for column in shown:
         columns.append(column)
         if column.key in sheet.changes:
-            columns.append(Column("change", sheet.changes[column.key], key=f"change_{column.key}"))
+            columns.append(Column(*sheet.changes[column.key], key=f"change_{column.key}"))
     return columns
 
 
@@ -204,7 +215,7 @@ def _rows(
         for figure in sheet.changes:
             cells[f"change_{figure}"] = _change(case, figure, base.get(case["grid"]))
         cells[HOLDS] = _holds(outages, case, checks, limits)
-        first = [case["words"], tr(GRID_WORDS.get(case["grid"], case["grid"]))]
+        first = [case["words"], grid_in_words(case["grid"])]
         yield [*first, *(cells[column.key] for column in columns[len(first) :])]
 
 
@@ -236,9 +247,9 @@ def _is_beyond(check: Check, case: Case) -> bool:
 _FAILS = (
     *FIRST,
     Column("status", "beside", key="status"),
-    Column("fails at", widest=70, key="fails"),
-    Column("reason", widest=50, key="reason"),
-    Column("case", widest=44, key="case"),
+    Column("fails at", widest=110, key="fails"),
+    Column("reason", widest=40, key="reason"),
+    Column("case", widest=48, key="case"),
 )
 
 
@@ -256,10 +267,14 @@ def _fails(book: Book, outages: Outages) -> None:
 
 
 def _told(outages: Outages, case: Case, columns: Sequence[Column]) -> list[Any]:
-    words = "; ".join(failure.words for failure in outages.failures(case))
+    words = "; ".join(_failure(failure) for failure in outages.failures(case))
     cells = {"status": recorded(case["status"]), "fails": words, "reason": case["reason"], "case": case["case"]}
-    first = [case["words"], tr(GRID_WORDS.get(case["grid"], case["grid"]))]
+    first = [case["words"], grid_in_words(case["grid"])]
     return [*first, *(cells[column.key] for column in columns[len(first) :])]
+
+
+def _failure(failure: Failure) -> str:
+    return failure.words if failure.short == failure.words else f"{failure.short}: {failure.words}"
 
 
 def _colour_status(block: Block) -> None:

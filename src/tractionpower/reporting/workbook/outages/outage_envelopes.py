@@ -42,6 +42,12 @@ BASE, WORST, KM = mark("nothing out"), mark("worst of all cases"), mark("place [
 LIMIT = mark("limit [V]")
 USE, BASE_USE = mark("utilisation in the worst case [%]"), mark("with nothing out [%]")
 
+MOST_PRINTED = 300
+"""Rows along the line that are printed with their charts."""
+
+PRINTED_TO = "L"
+"""Last column of the charts."""
+
 _DEVICES = (
     Column("device", widest=34),
     Column("kind", widest=28),
@@ -49,12 +55,12 @@ _DEVICES = (
     Column(USE, "0.0", key="use"),
     Column("change", "0.0"),
     Column(HOLDS, "beside", key="holds"),
-    Column("worst case", widest=50),
+    Column("worst case", widest=60),
     Column("window that rules", "beside"),
     Column("load in it [A]", "0", key="load"),
     Column("permitted in it [A]", "0", key="permitted"),
     Column("highest current [A]", "0"),
-    Column("case of the highest current", "beside", 50),
+    Column("case of the highest current", "beside", 60),
 )
 
 
@@ -134,7 +140,7 @@ def _along(book: Book, outages: Outages) -> None:
         return
     page = book.page("Envelope", "Envelope along the line: the worst voltage and rail potential of all outages")
     limit = outages.limit("u_min2") if (rows["quantity"] == "voltage").any() else None
-    cell = "" if limit is None else limit_line(page, tr("U_min2: lowest voltage"), "u_min2", limit.value, limit.unit)
+    cell = "" if limit is None else limit_line(page, "U_min2", "u_min2", limit.value, limit.unit)
     page.note(
         "Nothing out: at normal grid voltage. Voltage: the lowest of trains within 0.25 km and of fixed places. Rail potential:"
         " the greatest of either sign, against remote earth. The last column tells the case that is worst there."
@@ -145,6 +151,9 @@ def _along(book: Book, outages: Outages) -> None:
         if number:
             page.new_page()
         kept.append(page.room_for_chart())
+    if len(rows) > MOST_PRINTED:
+        page.note(tr("The charts are printed; the {rows} rows that they are drawn from stand below.", rows=len(rows)))
+        page.sheet.print_area = f"A1:{PRINTED_TO}{page.next - 1}"
     for (words, quantity, own), row in zip(groups, kept, strict=True):
         page.new_page()
         page.section(words)

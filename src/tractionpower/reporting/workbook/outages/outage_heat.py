@@ -27,7 +27,7 @@ WIDTH = 5.0
 """Width of the column of an outage [characters]."""
 
 _LOW, _MID, _HIGH = "FFFFFF", "FFE08A", "D55E00"
-_POINTS = 5.2
+_POINTS = 6.0
 """Height of a rotated character [pt]."""
 
 
@@ -84,8 +84,9 @@ def _turn(page: Page, block: Block) -> None:
     row, longest = block.first - 1, 0
     for column in range(4, len(block.headings) + 1):
         cell = page.sheet.cell(row, column)
+        cell._style = copy(cell._style)  # that of all headings
         alignment: Any = copy(cell.alignment)
-        alignment.textRotation, alignment.vertical = 90, "bottom"
+        alignment.textRotation, alignment.vertical, alignment.wrap_text = 90, "bottom", False
         cell.alignment = alignment
         longest = max(longest, len(str(cell.value)))
     page.sheet.row_dimensions[row].height = min(max(60.0, longest * _POINTS + 14.0), 400.0)

@@ -12,7 +12,7 @@ from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 from tractionpower.reporting.workbook.outages import outage_cases, outage_heat
-from tractionpower.reporting.workbook.outages.outage_cases import GRID_WORDS, SHEETS, figure_of, range_name
+from tractionpower.reporting.workbook.outages.outage_cases import SHEETS, figure_of, grid_in_words, range_name
 from tractionpower.reporting.workbook.sizing.judging import (
     HOLDS,
     NO,
@@ -72,7 +72,7 @@ def add(book: Book, outages: Outages) -> None:
     )
     groups = _groups(outages)
     columns = _columns(outages)
-    block = page.table(columns, [_row(outages, number, group, columns) for number, group in enumerate(groups)], frozen=True)
+    block = page.table(columns, [_row(outages, group, columns) for group in groups], frozen=True)
     colour_word(block, HOLDS)
     _colour(block, limits, outages)
     end, page.next = page.next, head
@@ -103,17 +103,16 @@ def _groups(outages: Outages) -> list[_Group]:
 
 def _columns(outages: Outages) -> list[Column]:
     grids = [
-        Column(tr("lowest voltage, {grid} grid [V]", grid=tr(GRID_WORDS.get(grid, grid))), "0", key=f"volts_{grid}")
+        Column(tr("lowest voltage, {grid} grid [V]", grid=grid_in_words(grid)), "0", key=f"volts_{grid}")
         for grid in outages.grids
     ]
     if len(grids) == 1:
         grids = [Column("lowest voltage [V]", "0", key=f"volts_{outages.grids[0]}")]
     return [
-        Column("no.", "0", key="number"),
-        Column("what is out", widest=40, key="words"),
+        Column("what is out", widest=44, key="words"),
         Column("kind", widest=20, key="kind"),
         Column(HOLDS, "beside", key=HOLDS),
-        Column("why, and at which grid voltage", widest=46, key="why"),
+        Column("why, and at which grid voltage", widest=60, key="why"),
         *grids,
         *(Column(words, style, key=figure) for words, style, figure, _ in _FIGURES if _has(outages, figure)),
         Column("added delay, at most [s]", "0", key="added"),
@@ -121,12 +120,12 @@ def _columns(outages: Outages) -> list[Column]:
     ]
 
 
-def _row(outages: Outages, number: int, group: _Group, columns: Sequence[Column]) -> list[Any]:
+def _row(outages: Outages, group: _Group, columns: Sequence[Column]) -> list[Any]:
     first, (low, high) = group.first, group.rows
     by_grid = {case["grid"]: row for row, case in enumerate(outages.by_id.values(), 1) if low <= row <= high}
     computed = [case for case in group.cases.values() if case["status"] in COMPUTED]
     cells: dict[str, Any] = {
-        "number": number or None, "words": first["words"], "kind": tr(KINDS_WORDS.get(first["kind"], first["kind"])),
+        "words": first["words"], "kind": tr(KINDS_WORDS.get(str(first["kind"]), str(first["kind"]))),
         "why": _why(outages, group.cases), HOLDS: _holds(outages, group),
     }  # fmt: skip
     for grid in outages.grids:
@@ -139,7 +138,7 @@ def _row(outages: Outages, number: int, group: _Group, columns: Sequence[Column]
         found = (min if worst == _MIN else max)(values, default=None)
         cells[figure] = None if found is None else Formula(f"{worst}({_span(figure, group.rows)})", found)
     added = max((outages.added_s[case["case"]] for case in computed if case["case"] in outages.added_s), default=(None, ""))
-    cells["added"], cells["train"] = added
+    cells["added"], cells["train"] = added if not added[0] or added[0] > 0.0 else (added[0], "")
     return [cells[column.key] for column in columns]
 
 
@@ -175,7 +174,7 @@ def _why(outages: Outages, cases: Mapping[str, Case]) -> str:
     if len(outages.grids) == 1:
         return "; ".join(found)
     every = [grid for grid in outages.grids if grid in cases]
-    words = {grid: tr(GRID_WORDS.get(grid, grid)) for grid in every}
+    words = {grid: grid_in_words(grid) for grid in every}
     return "; ".join(
         f"{what} ({tr('all') if grids == every else ', '.join(words[g] for g in grids)})" for what, grids in found.items()
     )
@@ -202,7 +201,7 @@ def _banner(page: Page, outages: Outages, block: Block, groups: Sequence[_Group]
         banner(page, tr("No outage was looked at"), "doubt", name=BANNER)
         return
     failing = sum(any(map(outages.failures, group.cases.values())) for group in groups[base:])
-    area = f"$D${block.first + base}:$D${block.last}"
+    area = f"$C${block.first + base}:$C${block.last}"
     count = f'COUNTIF({area},"{tr(NO)}")'
     text = sentence(tr("{failing} of {all} outages fail"), failing=(count, failing), all=(str(many), many))
     banner(page, text, "good", f"{count}>0", BANNER)

@@ -7,7 +7,6 @@ import re
 from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule, FormulaRule
-from openpyxl.utils import absolute_coordinate
 
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.texts import mark, tr
@@ -48,7 +47,7 @@ def limit_line(page: Page, label: str, limit: str, value: float, unit: str) -> s
     page.put(row, 2, Formula(f"{{limit_{limit}}}", value), "editable general")
     page.put(row, 3, unit, "plain")
     page.next += 1
-    return absolute_coordinate(f"B{row}")
+    return f"$B${row}"
 
 
 def window_in_words(seconds: float) -> str:

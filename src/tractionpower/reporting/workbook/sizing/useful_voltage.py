@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from tractionpower.model.base import format_time
@@ -175,12 +176,11 @@ class _Judge:
 def mean_cell(row: Mapping[Any, Any], name: str) -> Any:
     """Return a mean as a formula on its sums where the table has them, else the value; None without one."""
     above, below, text, factor = _SUMS[name]
-    value, sums = row[_COLUMNS[name]], (row.get(_OF_SUMS[above]), row.get(_OF_SUMS[below]))
+    value = row[_COLUMNS[name]]
     if not known(value):
         return None
-    if not (known(sums[0]) and known(sums[1]) and sums[1] > 0.0):
-        return float(value)
-    return Formula(text, factor * sums[0] / sums[1])
+    total, divisor = (float(row.get(_OF_SUMS[each], np.nan)) for each in (above, below))
+    return Formula(text, factor * total / divisor) if np.isfinite(total) and divisor > 0.0 else float(value)
 
 
 def _has(column: Column, rows: pd.DataFrame) -> bool:
