@@ -138,7 +138,7 @@ def _row(outages: Outages, group: _Group, columns: Sequence[Column]) -> list[Any
         found = (min if worst == _MIN else max)(values, default=None)
         cells[figure] = None if found is None else Formula(f"{worst}({_span(figure, group.rows)})", found)
     added = max((outages.added_s[case["case"]] for case in computed if case["case"] in outages.added_s), default=(None, ""))
-    cells["added"], cells["train"] = added if not added[0] or added[0] > 0.0 else (added[0], "")
+    cells["added"], cells["train"] = added if added[0] and added[0] > 0.0 else (added[0], "")
     return [cells[column.key] for column in columns]
 
 

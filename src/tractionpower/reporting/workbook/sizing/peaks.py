@@ -38,6 +38,9 @@ NO_SETTING = mark("no setting")
 LEAST_PERCENT = 1.0
 """Parts of a peak that are less than this of it are left out [%]."""
 
+MOST_PRINTED = 400
+"""Rows of peaks that are printed whole."""
+
 Places = Mapping[str, tuple[int, float]]
 """Kind and place of devices [km]."""
 
@@ -70,7 +73,7 @@ def add(book: Book) -> None:
                 least=number(LEAST_PERCENT),
             )
         )
-        page.table(_PEAKS, _peaks(rows, places), frozen=True)
+        page.table(_PEAKS, _peaks(rows, places), frozen=True, printed=MOST_PRINTED)
     _breakers(book, places)
 
 
