@@ -264,7 +264,7 @@ def outages(scenario: Scenario, grids: tuple[str, ...] = ("normal", "low", "high
 
 def _verdict(lowest: float) -> dict[str, Any]:
     return {
-        "name": "lowest voltage in any outage", "value": lowest, "unit": "V", "place": "track 1, km 80.2", "time": "07:30:00",
+        "name": "lowest voltage", "value": lowest, "unit": "V", "place": "track 1, km 80.2", "time": "07:30:00",
         "limit": "u_min2", "limit_value": 2000.0, "source": "EN 50163 table as quoted", "status": "secondary",
         "met": lowest >= 2000.0,
     }  # fmt: skip

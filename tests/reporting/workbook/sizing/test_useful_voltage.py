@@ -43,7 +43,9 @@ def test_hours_are_told_by_zone_and_in_full(book, formulas, study):
 def test_acceptance_has_the_lowest_of_the_zones(book, study):
     table = study[0].table("useful_voltage")
     zones = table[(table["kind"] == "zone") & (table["window"] == "run")]
-    rows = [row for row in read_table(book["Acceptance"]) if row["what is judged"].startswith("mean useful voltage of zones, current")]
+    rows = [
+        row for row in read_table(book["Acceptance"]) if row["what is judged"].startswith("mean useful voltage of zones, current")
+    ]
     lowest = zones.loc[zones["current_weighted_v"].idxmin()]
     shown = next(row for row in rows if "worst hour" not in row["what is judged"])
     assert shown["found"] == pytest.approx(lowest["current_weighted_v"])
