@@ -271,7 +271,8 @@ def _out(kind: str, subject: str, mode: str) -> str:
     if subject.endswith(" unit"):
         counted_units = _UNITS.search(mode)
         left = tr("only unit out") if counted_units is None else tr("{units} units", units=recorded(counted_units[1]))
-        return f"{subject.removesuffix(' unit')}, {left}"
+        more = "" if counted_units is None else recorded(mode[counted_units.end() :])  # such as when a reserve feeds
+        return f"{subject.removesuffix(' unit')}, {left}{more}"
     words = KIND_WORDS.get(kind, kind) if kind not in ("", "variant") else ""
     told = not words or subject.casefold().startswith(tuple(words.split()))
     named = recorded(subject) if told else f"{tr(words)} {recorded(subject)}"
