@@ -36,7 +36,7 @@ def test_two_runs_side_by_side(capsys):
     for name in ("compare.xlsx", "compare.parquet", "figures/compare_voltage.png", "figures/compare_substations.png"):
         assert (folder / name).is_file(), name
     results = Results.open(folder)
-    book = load_workbook(folder / "compare.xlsx")
+    book = load_workbook(folder / "compare.xlsx", data_only=True)
     assert {"Cover", "Run", "Substations", "Inputs that differ", "Verdicts"} <= set(book.sheetnames)
     shown = {(row["figure"], row["place"]): row for row in read_table(book["Substations"])}
     rows = results.table("compare")

@@ -71,9 +71,7 @@ def add_values(book: Book, rows: pd.DataFrame, errors: pd.DataFrame) -> dict[str
     places: dict[str, Place] = {}
     for first in range(0, len(names), AT_ONCE):
         some = names[first : first + AT_ONCE]
-        own = (
-            rows[rows["series"].isin(some)].groupby([x, "series"], sort=True)[["measured", "computed"]].first().unstack("series")
-        )
+        own = _side_by_side(rows[rows["series"].isin(some)], x)
         every = -(-len(own) // MOST_ROWS) or 1
         kept = pd.DataFrame(own.iloc[::every])
         words = {str(row["series"]): series_words(row) for row in errors.to_dict("records")}

@@ -7,7 +7,7 @@ from openpyxl import load_workbook
 
 from tractionpower.reporting.workbook import write_workbook
 
-SHEETS = ["Feasibility", "What would save it", "Delays", "Sections", "Lost time"]
+SHEETS = ["Feasibility", "What would save it", "Delays by cause", "Delays", "Sections", "Lost time"]
 LATE = {"1001": {"voltage": 70.0, "dwell": 5.0}}
 
 
@@ -17,7 +17,13 @@ def book(tmp_path_factory):
     file = write_workbook(
         judged(results, scenario, LATE, **REMEDIES), scenario, tmp_path_factory.mktemp("judged") / "report.xlsx"
     )
-    return load_workbook(file)
+    return load_workbook(file, data_only=True)
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Return a function that writes results and reads the values of the workbook back."""
+    return lambda results, scenario: load_workbook(write_workbook(results, scenario, tmp_path / "report.xlsx"), data_only=True)
 
 
 def rows_of(sheet, first="train"):
@@ -30,7 +36,7 @@ def rows_of(sheet, first="train"):
 
 
 def test_the_sheets_stand_behind_the_cover(book):
-    assert book.sheetnames[:7] == ["Cover", "Acceptance", *SHEETS]
+    assert book.sheetnames[:8] == ["Cover", "Acceptance", *SHEETS]
 
 
 def test_the_cover_says_the_verdict_first(book):
@@ -73,10 +79,12 @@ def test_lost_time_by_area_and_kilometre_with_charts(book):
     sheet = book["Lost time"]
     assert len(sheet._charts) == 2
     areas = rows_of(sheet, "area of")
+    below = areas.pop()
     total = sum(row["lost [s]"] for row in areas)
+    assert (below["area of"], below["lost [s]"]) == ("all", pytest.approx(total))
     assert total == pytest.approx(76.0, abs=0.1)  # 70 s, and 2 s of each other train
     assert areas == sorted(areas, key=lambda row: -row["lost [s]"])
-    kms = [row for row in sheet.iter_rows(values_only=True) if row[1] in (1.5, 5.5, 9.5) and row[3] == 4]
+    kms = [row for row in sheet.iter_rows(values_only=True) if row[1] in (1.5, 5.5, 9.5) and row[5] == 4]
     assert sum(row[2] for row in kms) == pytest.approx(total, abs=0.1)
 
 
@@ -112,3 +120,28 @@ def test_a_train_that_did_not_come_is_red_and_no_number(write):
     train |= {"verdict": "not finished", "late_s": None, "reserve_left_s": None, "cause": "", "why": "stuck"}
     row = rows_of(write(told, scenario)["Feasibility"])[0]
     assert (row["verdict"], row["late at worst [s]"], row["reserve left [s]"]) == ("not finished", None, None)
+
+
+def test_verdicts_and_reserves_are_formulas_on_the_tolerance(tmp_path):
+    results, scenario = make_case()
+    path = write_workbook(judged(results, scenario, LATE), scenario, tmp_path / "report.xlsx")
+    live = load_workbook(path)
+    first = next(row[0].row for row in live["Feasibility"].iter_rows(max_col=1) if row[0].value == "1001")
+    assert live["Feasibility"].cell(first, 2).value == f'=IF(C{first}>limit_tolerance_s,"infeasible","feasible")'
+    assert live["Feasibility"]["A2"].value.startswith('=IF(feasibility_late_trains>0,"Infeasible: "&feasibility_late_trains&')
+    sections = rows_of(live["Sections"])
+    assert all(str(row["reserve left [s]"]).startswith("=") for row in sections)
+    names = live.defined_names
+    assert {"limit_tolerance_s", "feasibility_late_trains", "delays_s", "late_trains_voltage_s"} <= set(names)
+    rows = [row for row in live["Acceptance"].iter_rows(values_only=True) if "greatest lateness at a timed call" in row]
+    assert len(rows) == 1
+
+
+def test_delays_by_cause_are_stacked_for_late_trains(book):
+    sheet = book["Delays by cause"]
+    (row,) = rows_of(sheet)
+    assert (row["train"], row["low voltage [s]"], row["dwell at stops [s]"], row["delay [s]"]) == ("1001", 70.0, 5.0, 75.0)
+    (chart,) = sheet._charts
+    assert (chart.grouping, chart.type, len(chart.series)) == ("stacked", "bar", 2)
+    sums = {row[0]: row[1] for row in sheet.iter_rows(max_col=2, values_only=True)}
+    assert (sums["low voltage"], sums["dwell at stops"], sums["all"]) == (70.0, 5.0, 75.0)

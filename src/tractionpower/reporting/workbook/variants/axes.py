@@ -27,13 +27,13 @@ def fit_axis(axis: Any, values: Sequence[float], *, ticks: int = 6) -> None:
     if low >= 0.0 and high > 0.0 and low < 0.35 * high:
         low = 0.0
     spread = high - low or abs(high) * 0.1 or 1.0
+    if high == low:
+        low, high = low - spread / 2.0, high + spread / 2.0
     rough = spread / ticks
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(power * each for each in STEPS if power * each >= rough * 0.999)
     axis.majorUnit = step
     axis.scaling.min, axis.scaling.max = _round(math.floor(low / step) * step), _round(math.ceil(high / step) * step)
-    if axis.scaling.min == axis.scaling.max:
-        axis.scaling.max = _round(axis.scaling.min + step)
 
 
 def rooms_for_charts(page: Page, count: int) -> list[int]:
