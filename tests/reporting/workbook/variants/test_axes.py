@@ -24,3 +24,10 @@ def test_an_axis_without_values_stays_as_it_is():
     axis = ScatterChart().y_axis
     fit_axis(axis, [float("nan")])
     assert axis.scaling.min is None
+
+
+def test_bars_begin_at_zero():
+    axis = ScatterChart().y_axis
+    fit_axis(axis, [4000.0, 5200.0], from_zero=True)
+    assert axis.scaling.min == 0.0
+    assert axis.scaling.max >= 5200.0

@@ -18,9 +18,12 @@ POINTS = ("circle", "square", "triangle", "diamond", "x", "plus", "star")
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 
 
-def fit_axis(axis: Any, values: Sequence[float], *, ticks: int = 6) -> None:
-    """Let an axis span the values in round steps; one of values near zero, or far apart, begins there."""
-    known = [value for value in values if math.isfinite(value)]
+def fit_axis(axis: Any, values: Sequence[float], *, ticks: int = 6, from_zero: bool = False) -> None:
+    """Let an axis span the values in round steps; one of values near zero, or far apart, begins there.
+
+    Bars are lengths: `from_zero` lets them begin at zero, but those of voltages, which are read against limits.
+    """
+    known = [value for value in (*values, *([0.0] if from_zero else [])) if math.isfinite(value)]
     if not known:
         return
     low, high = min(known), max(known)

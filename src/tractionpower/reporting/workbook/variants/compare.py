@@ -100,15 +100,22 @@ def _figure_rows(
     rows: pd.DataFrame, folders: Sequence[str], *, has_place: bool, has_at: bool
 ) -> Iterator[tuple[tuple[str, str], list[Any]]]:
     """Yield figure and place, and the cells of the row."""
-    for (name, place), own in rows.groupby(["figure", "place"], sort=False):
-        found: Mapping[str, Any] = {row["folder"]: row for row in own.to_dict("records")}
+    by_figure: dict[tuple[str, str], dict[str, Mapping[Any, Any]]] = {}
+    for row in rows.to_dict("records"):
+        by_figure.setdefault((str(row["figure"]), str(row["place"])), {})[str(row["folder"])] = row
+    for (name, place), found in by_figure.items():
         values = [float(found[folder]["value"]) if folder in found else None for folder in folders]
-        line: list[Any] = [heading_of(str(name)).split(" [")[0], *([place] if has_place else []), own["unit"].iloc[0], *values]
+        line: list[Any] = [
+            heading_of(name).split(" [")[0],
+            *([place] if has_place else []),
+            next(iter(found.values()))["unit"],
+            *values,
+        ]
         for k, value in enumerate(values[1:], 1):
             line += _differences(values[0], value, k)
         if has_at:
             line += [recorded(found[folder]["at"]) if folder in found else None for folder in folders]
-        yield (str(name), str(place)), line
+        yield (name, place), line
 
 
 def _differences(base: float | None, value: float | None, k: int) -> list[Formula | None]:

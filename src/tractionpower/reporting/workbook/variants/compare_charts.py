@@ -67,7 +67,8 @@ def add_charts(book: Book, folders: Sequence[str], sheets: Sheets) -> None:
         block = page.table(columns, [_row(key, sheets) for key in keys])
         chart = bars(f"{tr(title)} [{unit}]", f"[{unit}]", block, "what", [f"value{k}" for k in range(len(folders))])
         name_series(chart, folders)
-        fit_axis(chart.y_axis, [value for key in keys for value in sheets.rows[key][2] if value is not None])
+        known = [value for key in keys for value in sheets.rows[key][2] if value is not None]
+        fit_axis(chart.y_axis, known, from_zero=unit != "V")
         page.chart(chart, room)
     for (tracks, rows), room in zip(lines, rooms[len(groups) :], strict=True):
         page.chart(_along(page, (tracks, rows), folders), room)

@@ -110,7 +110,7 @@ def _over_grid(page: Page, data: SweepData, cases: Cases, cells: Cells, told: tu
             chart.title = tr("{figure} for each {input}", figure=tr(heading(name)), input=data.names[grid.across])
             chart.title.overlay = False
         known = [value for row in cases.rows if (value := cases.value(row, name)) is not None]
-        fit_axis(chart.y_axis, known)
+        fit_axis(chart.y_axis, known, from_zero=not is_number and not name.endswith("_v"))
         if is_number:
             fit_axis(chart.x_axis, [number_of(value) or 0.0 for value in grid.x])
         page.chart(chart, room)
@@ -158,7 +158,8 @@ def _by_case(variants: Block, cases: Cases, name: str) -> Any:
         title = tr("{figure}: the first {count} of {all} cases", figure=title, count=MOST_BARS, all=len(cases.rows))
     chart = bars(title, tr(heading(name)), some, "case", [name])
     chart.x_axis.title = tr(CASE)
-    fit_axis(chart.y_axis, [value for row in cases.rows if (value := cases.value(row, name)) is not None])
+    known = [value for row in cases.rows if (value := cases.value(row, name)) is not None]
+    fit_axis(chart.y_axis, known, from_zero=not name.endswith("_v"))
     return chart
 
 

@@ -19,7 +19,7 @@ from tractionpower.reporting.workbook.variants.sweep_words import (
 )
 from tractionpower.studies.sweep.differences import NOT_JUDGED
 
-AT_ONCE = 9
+AT_ONCE = 7
 """Figures with their per cent that fit on a printed page."""
 
 
