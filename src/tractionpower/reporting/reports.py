@@ -81,7 +81,7 @@ def source_of(results: Results) -> str:
     run = results.run
     version = str(run.get("versions", {}).get("tractionpower", ""))
     parts = [
-        tr("study {study}", study=run["study"]) if run.get("study") else "",
+        tr("study {study}", study=str(run["study"])[:60]) if run.get("study") else "",
         tr("inputs {hash}", hash=str(run["input_hash"])[:12]) if run.get("input_hash") else "",
         f"tractionpower {version}" if version else "",
     ]

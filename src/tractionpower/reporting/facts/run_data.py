@@ -15,7 +15,11 @@ from tractionpower.movement.compile import PlannedRun, plan_runs
 from tractionpower.reporting.facts.formations import kinds_of_trains
 from tractionpower.reporting.facts.places import LinePlaces
 from tractionpower.reporting.facts.selected import selection_words
+from tractionpower.reporting.texts import number, tr
 from tractionpower.results.results import Results
+
+MOST_TITLE_LETTERS = 120
+"""Letters of the name of a study above a figure; of a longer one the beginning stands there."""
 
 SAME_S = 1e-6
 """Times that differ by less are the same [s]."""
@@ -54,10 +58,13 @@ class RunData:
     def title(self) -> str:
         """Name of the study; with rows at intervals only, it says so, since a peak between two rows does not show."""
         name = self.scenario.name or str(self.results.run.get("study", ""))
+        name = name if len(name) <= MOST_TITLE_LETTERS else f"{name[: MOST_TITLE_LETTERS - 1].rstrip()}…"
         selected = selection_words(self.results.run)
         name = f"{name} ({selected})" if selected else name
         every_s = self.scenario.output.every_s
-        return f"{name} (rows every {every_s:g} s)" if every_s and every_s > self.scenario.clock.step_s else name
+        if not every_s or every_s <= self.scenario.clock.step_s:
+            return name
+        return tr("{study} (rows every {seconds} s)", study=name, seconds=number(every_s, 3))
 
     @cached_property
     def key_figures(self) -> dict[tuple[str, str], dict[str, Any]]:

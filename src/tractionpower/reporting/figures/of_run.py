@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.facts.run_data import RunData
-from tractionpower.reporting.figures.base.drawing import FORMATS, files_of, remove_files, wanted
+from tractionpower.reporting.figures.base.drawing import FORMATS, current_drawing, files_of, remove_files, wanted
 from tractionpower.reporting.figures.base.style import save_as, stems
 from tractionpower.reporting.figures.delays.delay_graph import delay_graphs
 from tractionpower.reporting.figures.delays.lost_figures import delays_by_cause, lost_time
@@ -81,7 +81,7 @@ def write_figures(results: Results, scenario: Scenario, folder: Path) -> list[Pa
     paths = [path for name, figure in _figures(data) for path in save_as(figure, folder, name)]
     paths += _write_curves(data, folder)
     remove_files(files_of(folder, (*SINGLE, *GRAPHS, *GROUPED)) - {*paths})
-    chosen = [name for name in chosen_trains(data) if wanted(f"{TRAINS}/{name}")]
+    chosen = _trains_to_draw(data)
     names = stems(chosen)
     drawn = [path for train, figure in train_figures(data, chosen) for path in save_as(figure, folder / TRAINS, names[train])]
     remove_files({path for path in (folder / TRAINS).glob("*.*") if path.suffix[1:] in FORMATS} - {*drawn})
@@ -100,6 +100,13 @@ def write_outage_figures(results: Results, scenario: Scenario, folder: Path) -> 
     paths += [path for name, figure in outage_maps(outages, title) if wanted(name) for path in save_as(figure, folder, name)]
     remove_files(files_of(folder, (*OUTAGES, MAP)) - {*paths})
     return paths
+
+
+def _trains_to_draw(data: RunData) -> list[str]:
+    """Return the trains that get a figure: those that the template names, or those of most interest."""
+    named = [name.removeprefix(f"{TRAINS}/") for name in current_drawing().names or () if name.startswith(f"{TRAINS}/")]
+    usual = [name for name in chosen_trains(data) if wanted(f"{TRAINS}/{name}")]
+    return sorted({*usual, *(name for name in named if name in data.planned)})
 
 
 def _write_curves(data: RunData, folder: Path) -> list[Path]:

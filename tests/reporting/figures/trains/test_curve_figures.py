@@ -4,13 +4,19 @@ import numpy as np
 import pandas as pd
 import pytest
 from fake_journeys import make_curves
+from fake_runs import small_run
 
+from tractionpower.model.report import ReportFigures
+from tractionpower.movement.curves import drive_curves
+from tractionpower.reporting.facts.run_data import RunData
+from tractionpower.reporting.figures.base.drawing import drawing
 from tractionpower.reporting.figures.trains.curve_figures import (
     balancing_speed,
     curves_figure,
     curves_table,
     has_drive,
     resistance_figure,
+    run_curves,
     starting_gradient,
     write_curves_csv,
 )
@@ -92,3 +98,18 @@ def test_without_a_drive_there_is_the_resistance_only(no_overlap):
 def test_the_steepest_gradient_of_a_start():
     assert starting_gradient(make_curves([3000.0])) == pytest.approx(1000.0 * (200e3 - 7e3) / (484e3 * 9.80665))
     assert starting_gradient(make_curves([2000.0])) < 0.0
+
+
+def test_each_kind_of_train_of_a_run_with_a_drive_has_curves():
+    run = small_run()
+    data = RunData(run.results, run.scenario)
+    drawn = dict(run_curves(data))
+    assert set(drawn) == {"curves_ed250", "curves_ep09-10-coaches"}
+    upper = drawn["curves_ed250"].axes[0]
+    train = next(train for train in run.scenario.trains if train.id == "ed250")
+    curves = drive_curves(train, run.scenario.vehicles, run.scenario.limits)
+    for curve in curves.curves:
+        line = next(line for line in upper.lines if line.get_label() == f"effort at {curve.voltage_v:g} V")
+        np.testing.assert_allclose(line.get_ydata(), curve.effort_n / 1000.0)
+    with drawing(ReportFigures(names=("curves_ed250",))):
+        assert [name for name, _ in run_curves(data)] == ["curves_ed250"]

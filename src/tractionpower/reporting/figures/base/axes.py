@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tractionpower.model.limits import find_limit
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.figures.base.labels import LETTER, LINE, clock, clock_ticks, fitting
+from tractionpower.reporting.figures.base.labels import LETTER, LINE, MOST_STATION_LETTERS, clock, clock_ticks, fitting, shortened
 from tractionpower.reporting.figures.base.style import GREY, INK
 from tractionpower.reporting.texts import number, tr
 
@@ -106,6 +106,7 @@ def mark_devices(axes: Axes, devices: Sequence[tuple[float, str, bool]], inches:
     `devices` are place on the horizontal axis, name, and whether it is a substation. Where names would overlap,
     substations keep theirs first; the others keep their sign where there is room for it.
     """
+    devices = [(place, shortened(name, MOST_STATION_LETTERS), substation) for place, name, substation in devices]
     low, high = axes.get_xlim()
     per_inch = abs(high - low) / inches
     places, important = [place for place, _, _ in devices], [substation for _, _, substation in devices]

@@ -11,6 +11,9 @@ LETTER, LINE = 0.075, 0.17
 """Width of a letter and height of a line of small text [inches]."""
 
 
+MOST_STATION_LETTERS = 24
+"""Letters of the name of a station or device along an axis; of a longer one the beginning stands there."""
+
 MOST_LETTERS = 44
 """Letters of a name beside a row of a figure."""
 

@@ -17,12 +17,15 @@ from tractionpower.alignment.routes import stop_distance
 from tractionpower.model.line import Line
 from tractionpower.model.supply import Substation
 from tractionpower.reporting.facts.places import told
-from tractionpower.reporting.figures.base.labels import LETTER, fitting
+from tractionpower.reporting.figures.base.labels import LETTER, MOST_STATION_LETTERS, fitting, shortened
 from tractionpower.reporting.figures.base.style import GREY, INK, ORANGE, PALE, PURPLE
 from tractionpower.reporting.texts import mark, number, tr
 from tractionpower.supply.site import Site
 
 Array = NDArray[Any]
+
+MOST_LABEL_LETTERS = 40
+"""Letters of tracks in the label of an axis."""
 
 MOST_JOINTS = 2
 """With more changes to other kilometres the axis does not tell them."""
@@ -89,7 +92,12 @@ def course_of(path: RoutePath) -> Course:
             label += f":\n{tr(', then ').join(ways)}"
         return Course(0.0, 1, path.length_m, label, tuple(leg.start_m for _, leg in joints))
     names = list(dict.fromkeys(leg.axis.track for leg in path.legs))
-    return Course(float(km[0]), sign, path.length_m, tr("kilometre of the line [km], {tracks}", tracks=told(names)))
+    return Course(
+        float(km[0]),
+        sign,
+        path.length_m,
+        tr("kilometre of the line [km], {tracks}", tracks=shortened(told(names), MOST_LABEL_LETTERS)),
+    )
 
 
 def _ends(leg: PathLeg) -> tuple[float, float]:
@@ -148,6 +156,7 @@ def name_stations(
     panels: Sequence[Axes], course: Course, stations: Sequence[tuple[float, str]], stops_m: Sequence[float], inches: float
 ) -> None:
     """Name the stations above the first panel, which is `inches` wide; where names would overlap, stops stay and others go."""
+    stations = [(place, shortened(name, MOST_STATION_LETTERS)) for place, name in stations]
     per_inch = course.length_m / inches  # metres of route in an inch of paper
     places = [place for place, _ in stations]
     called = [any(abs(place - stop) < 1.0 for stop in stops_m) for place in places]

@@ -110,6 +110,7 @@ def save(figure: Figure, path: Path) -> Path:
     try:
         with mpl.rc_context(STYLE), warnings.catch_warnings():
             warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from")  # an emoji in a name becomes a box
+            warnings.filterwarnings("ignore", "constrained_layout not applied")  # a figure without room is drawn all the same
             finish(figure)
             figure.savefig(temporary, format=kind, metadata=_about(figure, kind))
         temporary.replace(path)

@@ -56,8 +56,9 @@ from tractionpower.reporting.texts import mark, number, tr
 
 Array = NDArray[Any]
 
-MOST = 12
-"""So many trains get a figure: half of them by the lowest voltage at the pantograph, then those with the highest current."""
+MOST = 8
+"""So many trains get a figure unless the template names others: half of them by the lowest voltage at the pantograph, then
+those with the highest current."""
 
 WIDTH, HEIGHT, PANEL = PAGE, 7.6, 2.4
 """Size of a figure and width of one of its panels [inches]."""

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from tractionpower.alignment.path import RoutePath
 from tractionpower.reporting.figures.base.axes import clock_label, set_clock
-from tractionpower.reporting.figures.base.labels import LETTER, LINE, fitting, shortened
+from tractionpower.reporting.figures.base.labels import LETTER, LINE, MOST_STATION_LETTERS, fitting, shortened
 from tractionpower.reporting.figures.base.style import BLUE, GREEN, GREY, INK, PAGE, STYLE, VERMILION, new_figure
 from tractionpower.reporting.figures.delays.delay_layer import Box, DelayLayer, draw_delays
 from tractionpower.reporting.texts import tr
@@ -31,9 +31,6 @@ TALL, LOW, BESIDE = 4.2, 1.5, 1.3
 
 NAMES = 1.75
 """Width of what stands left and right of the panels [inches]."""
-
-MOST_STATION_LETTERS = 24
-"""Letters of a station's name beside the graph; of a longer one the beginning stands there."""
 
 BESIDE_LABEL = 0.7
 """Width of what stands beside the words of a legend [inches]."""
@@ -195,7 +192,11 @@ def train_graph(panels: Sequence[GraphPanel], title: str) -> Figure:
         set_clock(grid[0], whole * (first // whole), -whole * (-last // whole), 12)
         for axes, panel, tall in zip(grid, panels, inches, strict=True):
             _draw_panel(axes, panel, tall, names=not many, circles=circles)
-            axes.set_ylabel(tr("kilometre of the line [km]") if single else f"{panel.words}\n{tr('kilometre [km]')}")
+            axes.set_ylabel(
+                tr("kilometre of the line [km]")
+                if single
+                else f"{shortened(panel.words, MOST_STATION_LETTERS)}\n{tr('kilometre [km]')}"
+            )
         grid[-1].set_xlabel(clock_label(grid[-1]))
         found: dict[str, Any] = {}
         for axes in grid:
@@ -286,7 +287,8 @@ def _name_trains(
         time_s, km = line.time_s, line.km
         if np.ptp(time_s) < lasts[line.name]:
             continue
-        wide = (LETTER * len(line.name) + 0.1) * second
+        name = shortened(line.name, MOST_STATION_LETTERS)
+        wide = (LETTER * len(name) + 0.1) * second
         moving = np.flatnonzero(np.abs(np.diff(km)) > 0.0)  # not where it stands or its line is broken
         moving = moving[(time_s[moving] > left + wide / 2) & (time_s[moving] < right - wide / 2)]
         spots = [moving[int(share * (len(moving) - 1))] for share in _SHARES] if moving.size else []
@@ -298,7 +300,7 @@ def _name_trains(
         for k in (alone or free)[:1]:
             taken.append((float(time_s[k]), float(km[k]), wide))
             box = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85}
-            axes.text(time_s[k], km[k], line.name, fontsize=7.5, color=INK, ha="center", va="center", bbox=box)
+            axes.text(time_s[k], km[k], name, fontsize=7.5, color=INK, ha="center", va="center", bbox=box)
 
 
 def _passes(line: TrainLine, x: float, y: float, wide: float, tall: float) -> bool:
