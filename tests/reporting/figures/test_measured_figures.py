@@ -20,7 +20,8 @@ def rows(count, *, places=False, gap=slice(0, 0)):
 
 
 FIGURES = SimpleNamespace(
-    series="train $2$ voltage_v", quantity="voltage_v", unit="V", mean_error=-10.0, rms_error=10.0, relative_percent=0.3,
+    series="train $2$ voltage_v", subject="train $2$",
+    quantity="voltage_v", unit="V", mean_error=-10.0, rms_error=10.0, relative_percent=0.3,
     correlation=1.0, lowest_measured=3210.0, lowest_computed=3200.0, highest_measured=3410.0, highest_computed=3400.0,
     energy_measured_kwh=np.nan, energy_error_percent=np.nan, rows=100, share_percent=90.0,
 )  # fmt: skip

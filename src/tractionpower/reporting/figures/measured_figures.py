@@ -74,13 +74,14 @@ def overlay(rows: pd.DataFrame, figures: Any, title: str) -> Figure:
     in_time = bool(rows["time_s"].notna().any())
     x = rows["time_s" if in_time else "position_km"].to_numpy(float)
     measured, computed = rows["measured"].to_numpy(float), rows["computed"].to_numpy(float)
-    label = f"{recorded(str(figures.quantity).rpartition('_')[0].replace('_', ' '))} [{figures.unit}]"
+    quantity = recorded(str(figures.quantity).rpartition("_")[0].replace("_", " "))
+    label = f"{quantity} [{figures.unit}]"
     with mpl.rc_context(STYLE):
         figure = new_figure(WIDTH, HEIGHT, 0.05)
         grid = figure.add_gridspec(3, 2, width_ratios=(1.0, 1.1), height_ratios=(2.0, 1.0, 2.0))
         above = figure.add_subplot(grid[0, :])
         below = figure.add_subplot(grid[1, :], sharex=above)
-        _line(above, x, measured, VERMILION, tr("measured"))
+        _line(above, x, measured, VERMILION, tr("measured"), (0, (3, 0.8)))
         _line(above, x, computed, BLUE, tr("computed"))
         above.set_ylabel(label)
         above.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
@@ -95,7 +96,7 @@ def overlay(rows: pd.DataFrame, figures: Any, title: str) -> Figure:
             below.set_xlabel(tr("place [km]"))
         _scatter(figure.add_subplot(grid[2, 0]), measured, computed, str(figures.unit))
         _tell(figure.add_subplot(grid[2, 1]), figures)
-        figure.suptitle(f"{title}: {figures.series}", x=0.01, ha="left")
+        figure.suptitle(f"{title}: {recorded(str(figures.subject))}, {quantity}", x=0.01, ha="left")
     return figure
 
 
@@ -120,14 +121,14 @@ def shift_figure(search: pd.DataFrame, told: dict[str, Any], title: str) -> Figu
     return figure
 
 
-def _line(axes: Axes, x: Array, values: Array, colour: str, name: str) -> None:
+def _line(axes: Axes, x: Array, values: Array, colour: str, name: str, dashes: Any = "-") -> None:
     kept = peaks_kept(values, MOST_POINTS)
     if len(kept) < len(values):
         # Ends of gaps stay, so that no line is drawn across one.
         missing = np.isnan(values)
         edges = np.flatnonzero(missing[1:] != missing[:-1])
         kept = np.unique(np.concatenate([kept, edges, edges + 1])).astype(np.intp)
-    axes.plot(x[kept], values[kept], color=colour, linewidth=1.0, label=name, alpha=0.9)
+    axes.plot(x[kept], values[kept], color=colour, linewidth=1.0, linestyle=dashes, label=name, alpha=0.9)
 
 
 def _scatter(axes: Axes, measured: Array, computed: Array, unit: str) -> None:
@@ -168,10 +169,10 @@ def _tell(axes: Axes, figures: Any) -> None:
         tr("RMS error {error} {unit}", error=number(figures.rms_error, size), unit=unit),
         tr("that is {percent} % of measured", percent=number(figures.relative_percent, 2)),
         tr("correlation {correlation}", correlation=number(figures.correlation, 4)),
-        tr("lowest measured {value} {unit}", value=number(figures.lowest_measured, size), unit=unit),
-        tr("lowest computed {value} {unit}", value=number(figures.lowest_computed, size), unit=unit),
-        tr("highest measured {value} {unit}", value=number(figures.highest_measured, size), unit=unit),
-        tr("highest computed {value} {unit}", value=number(figures.highest_computed, size), unit=unit),
+        tr("lowest measured {value} {unit}", value=number(figures.lowest_measured, size, bare=False), unit=unit),
+        tr("lowest computed {value} {unit}", value=number(figures.lowest_computed, size, bare=False), unit=unit),
+        tr("highest measured {value} {unit}", value=number(figures.highest_measured, size, bare=False), unit=unit),
+        tr("highest computed {value} {unit}", value=number(figures.highest_computed, size, bare=False), unit=unit),
     ]
     if np.isfinite(figures.energy_error_percent):
         percent, energy = signed(figures.energy_error_percent, 2), number(figures.energy_measured_kwh, 1)

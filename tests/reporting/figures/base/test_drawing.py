@@ -8,7 +8,7 @@ from matplotlib.text import Text
 
 from tractionpower.model.report import ReportFigures
 from tractionpower.reporting.figures.base.drawing import FORMATS, drawing, files_of, stands_for, wanted
-from tractionpower.reporting.figures.base.style import STYLE, new_figure, save, save_all
+from tractionpower.reporting.figures.base.style import STYLE, new_figure, save, save_all, wrapped
 from tractionpower.reporting.texts import language
 
 NASTY = [
@@ -88,6 +88,15 @@ def test_titles_and_sources_stay_on_the_figure_and_on_nothing_else(tmp_path, tit
     assert figure.axes[0].get_tightbbox().y1 <= head.y0 + 1.0
     assert figure.legends[0].get_window_extent().y0 >= foot.y1
     assert foot.y0 >= 0.0
+
+
+def test_lines_break_between_words_but_not_before_a_unit():
+    text = figure_called("x")._suptitle
+    whole = "lowest voltage 2745 V, km 74.2, 05:52:57; highest current 3200 A at 12.5 ‰ and 3.3 kV 2 % of it"
+    for room in range(120, 900, 20):
+        lines = wrapped(text, whole, float(room), 100).split("\n")
+        assert " ".join(lines) == whole or "…" in "".join(lines)
+        assert not any(line.split(" ")[0].strip(",;") in {"V", "A", "kV", "%", "‰", "74.2"} for line in lines)
 
 
 def test_polish_ticks_have_a_decimal_comma(tmp_path):

@@ -37,6 +37,9 @@ TITLE = 9.5
 
 MOST_TITLE_LINES = 4
 
+_WORDS = re.compile(r"(?:km )?\S*\d (?:[AVs%‰]|[kM][VAW]|km/h)(?!\w)\S*|(?:km )\d\S*|\S+")
+"""Words between which a line may break: not between a number and its unit."""
+
 STYLE: Any = {
     "font.size": 8.5,
     "xtick.labelsize": 8.0,
@@ -166,7 +169,7 @@ def wrapped(text: Text, words: str, room: float, most_lines: int) -> str:
     lines: list[str] = []
     for whole in words.splitlines():
         line = ""
-        for word in re.findall(r"\S+", whole):
+        for word in _WORDS.findall(whole):
             longer = f"{line} {word}".lstrip()
             if _width(text, longer) <= room:
                 line = longer

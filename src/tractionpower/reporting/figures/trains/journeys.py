@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from tractionpower.alignment.lines import tracks_by_line
 from tractionpower.alignment.routes import stop_distance
 from tractionpower.model.line import Line
+from tractionpower.model.report import ReportFigures
 from tractionpower.model.scenario import Scenario
 from tractionpower.movement.journey import Journey
 from tractionpower.reporting.facts.places import told
+from tractionpower.reporting.figures.base.drawing import drawing
 from tractionpower.reporting.figures.base.route_axis import route_in_words
 from tractionpower.reporting.figures.base.style import png_names, save
 from tractionpower.reporting.figures.trains.journey_figures import journey_figure
@@ -27,26 +30,26 @@ def write_journey_figures(outcome: JourneyOutcome, scenario: Scenario, folder: P
 
     Figures of trains that an earlier run left there go.
     """
-    line, volts = scenario.line, tr("theoretical journey at {voltage} V", voltage=number(outcome.voltage_v))
-    journeys = outcome.journeys
-    title = f"{scenario.name}: {volts}".lstrip(": ")
-    graph = train_graph(panels_of(journeys, line, tracks_by_line(line, scenario.supply)), title)
-    paths = [save(graph, folder / "train_graph.png")]
-    names = png_names(journey.run.id for journey in journeys)
-    for journey in journeys:
-        name = journey.run.id
-        if name in shown:
-            title = tr(
-                "train {train}, {route}: {what}",
-                train=name,
-                route=route_in_words(journey.path, route_end(journey), line),
-                what=volts,
-            )
-            paths.append(save(journey_figure(journey, stations_on(journey, line), title), folder / f"train-{names[name]}"))
+    volts = tr("theoretical journey at {voltage} V", voltage=number(outcome.voltage_v))
+    with drawing(ReportFigures(), tr("inputs {hash}", hash=scenario.input_hash[:12])):
+        paths = [save(figure, folder / name) for name, figure in _figures(outcome.journeys, scenario, shown, volts)]
     for stale in set(folder.glob("train-*.png")) - set(paths):
         with suppress(OSError):
             stale.unlink()
     return paths
+
+
+def _figures(journeys: Sequence[Journey], scenario: Scenario, shown: Sequence[str], volts: str) -> Iterator[tuple[str, Figure]]:
+    line = scenario.line
+    study = f"{scenario.name}: " if scenario.name else ""
+    yield "train_graph.png", train_graph(panels_of(journeys, line, tracks_by_line(line, scenario.supply)), f"{study}{volts}")
+    names = png_names(journey.run.id for journey in journeys)
+    for journey in journeys:
+        name = journey.run.id
+        if name in shown:
+            route = route_in_words(journey.path, route_end(journey), line)
+            title = tr("train {train}, {route}: {what}", train=name, route=route, what=volts)
+            yield f"train-{names[name]}", journey_figure(journey, stations_on(journey, line), f"{study}{title}")
 
 
 def panels_of(journeys: Sequence[Journey], line: Line, lines: Sequence[Sequence[str]]) -> list[GraphPanel]:
