@@ -37,7 +37,7 @@ def test_the_envelope_is_that_of_the_table(seen):
         np.testing.assert_allclose(worst.get_ydata()[known], own["worst_v"])
         np.testing.assert_allclose(worst.get_xdata()[known], own["km"])
         assert "[V]" in axes.get_ylabel()
-    assert figure.axes[-1].get_xlabel().endswith("[km]")
+    assert figure.axes[-1].child_axes[0].get_xlabel().endswith("[km]")
 
 
 def test_the_strip_names_the_case_that_rules(seen):
@@ -116,7 +116,7 @@ def test_many_outages_become_a_map_for_each_kind(seen, many):
     for figure in drawn.values():
         assert len(figure.axes[0].get_yticks()) <= MOST_ROWS + 1
         assert max(figure.get_size_inches()) <= A4
-    assert f"the {MOST_ROWS} with the lowest voltages of 80" in drawn[f"{MAP}_feeder"].axes[0].get_title(loc="left")
+    assert f"the {MOST_ROWS} with the lowest voltages of 80" in drawn[f"{MAP}_feeder"].get_suptitle()
 
 
 def test_figures_are_written_and_stale_ones_go(seen, tmp_path):

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
 from numpy.typing import NDArray
 
 from tractionpower.reporting.figures.base.axes import clock_label, set_clock
@@ -30,6 +32,22 @@ def shortened(text: str, most: int) -> str:
     ('Grodzisk', 'Grod…')
     """
     return text if len(text) <= most else f"{text[: most - 1].rstrip()}…"
+
+
+def fitted(text: str, inches: float) -> str:
+    """Return a text that is not wider than so much in the smallest size; of a longer one the beginning."""
+    font = FontProperties(size=SMALLEST)
+
+    def wide(letters: int) -> float:
+        return float(text_to_path.get_text_width_height_descent(text[:letters], font, ismath=False)[0]) / 72.0
+
+    if wide(len(text)) <= inches:
+        return text
+    low, high = 0, len(text)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if wide(middle) <= inches - SMALLEST / 72.0 else (low, middle)
+    return f"{text[:low].rstrip()}…"
 
 
 def head(figure: Figure, title: str) -> None:

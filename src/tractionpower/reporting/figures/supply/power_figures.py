@@ -20,11 +20,11 @@ from tractionpower.reporting.figures.supply.panels import (
     LETTER_7,
     MOST_PANELS,
     columns_for,
+    fitted,
     head,
     legend_below,
     most_loaded,
     once,
-    shortened,
     time_panels,
 )
 from tractionpower.reporting.texts import number, tr
@@ -108,7 +108,7 @@ def _draw(
     end = float(shown[0].time_s[-1]) + interval(shown[0].time_s)
     top = max(float(values(load).max()) for load in shown)
     columns = columns_for(len(shown))
-    letters = int((PAGE - 0.7) / columns / LETTER_7)
+    room = (PAGE - 0.6) / columns - 0.1
     with mpl.rc_context(STYLE):
         figure, panels = time_panels(len(shown), begin, end)
         for axes, load in zip(panels, shown, strict=False):
@@ -116,7 +116,7 @@ def _draw(
             for value, label, style in lines(load, top):
                 if np.isfinite(value):
                     axes.axhline(value, label=label, **style)
-            name = shortened(load.station.id, letters - len(title(load, "")))
+            name = fitted(load.station.id, room - LETTER_7 * len(title(load, "")))
             axes.set_title(title(load, name), loc="left", fontsize=SMALLEST, pad=3)
         figure.supylabel(words[0], fontsize=9)
         more = tr(", the {shown} most loaded of {every}", shown=MOST_PANELS, every=len(every)) if len(shown) < len(every) else ""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.facts.substation_loads import along_line
 from tractionpower.reporting.figures.base.style import BLUE, COLOURS, DASHES, INK, ORANGE, PAGE, SKY, SMALLEST, STYLE, new_figure
-from tractionpower.reporting.figures.supply.panels import head, legend_below, most_loaded, shortened
+from tractionpower.reporting.figures.supply.panels import head, legend_below, most_loaded, once, shortened
 from tractionpower.reporting.texts import number, tr
 
 Array = NDArray[Any]
@@ -48,7 +48,7 @@ def substation_loads(data: RunData) -> Figure | None:
         for axes, bars, label in ((left, powers, tr("power at the busbars [MW]")), (right, currents, tr("current [kA]"))):
             _draw_bars(axes, bars, names)
             axes.set_xlabel(label, fontsize=8)
-        legend_below(figure, *left.get_legend_handles_labels(), 3)
+        legend_below(figure, *once([left]), 3)
         more = tr(", the {shown} most loaded of {every}", shown=len(names), every=len(every)) if len(names) < len(every) else ""
         head(figure, tr("{study}: loads of the substations", study=data.title) + more)
         return figure
