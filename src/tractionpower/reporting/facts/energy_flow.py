@@ -18,9 +18,13 @@ SOURCE, RETURNED, ON_BOARD = "source", "returned", "on_board"
 
 WORDS: dict[str, tuple[str, Kind]] = {
     SOURCE: (mark("substations, no-load voltage times current (E I)"), "electric"),
+    "plant_heat": (mark("heat in transformers and rectifiers"), "heat"),
     "regulation": (mark("regulation (E - U) I: mostly commutation drop, no loss"), "drop"),
+    "commutation": (mark("regulation (E - U) I without heat: commutation drop"), "drop"),
     RETURNED: (mark("fed back by braking trains"), "recovered"),
     "conductor": (mark("heat in contact lines, rails and feeders"), "heat"),
+    "feeders": (mark("heat in feeders and return cables"), "heat"),
+    "lines": (mark("heat in contact lines and rails"), "heat"),
     "load": (mark("fixed loads"), "electric"),
     "grid": (mark("fed into the grid by two-way substations"), "electric"),
     "line": (mark("from the contact line"), "electric"),
@@ -86,9 +90,9 @@ def energy_stages(data: RunData) -> list[Stage]:
     ledgers = data.results.run.get("ledgers") or {}
     electric, trains, wheel = (_energies(ledgers.get(name)) for name in ("electric", "pantograph_to_wheel", "mechanical"))
     recovered = max(trains.get("recovered", 0.0), 0.0)
-    returned = min(max(_returned(data), 0.0), recovered) if electric else 0.0
+    returned = min(max(_sum(data, "energy_returned_kwh"), 0.0), recovered) if electric else 0.0
     stages = [
-        *(_supply(electric, trains, returned) if electric else ()),
+        *(_supply(data, electric, returned) if electric else ()),
         *(_trains(trains, recovered - returned, bool(electric), _any(wheel)) if _any(trains) else ()),
         *(_wheel(wheel, recovered, _braking_resistors(data)) if _any(trains) and _any(wheel) else ()),
     ]
@@ -105,9 +109,17 @@ def _any(energies: Mapping[str, float]) -> bool:
     return any(abs(value) > 1e-6 for value in energies.values())
 
 
-def _returned(data: RunData) -> float:
-    """Return what all trains have fed into the line [kWh]."""
-    return sum(float(told["value"] or 0.0) for (name, _), told in data.key_figures.items() if name == "energy_returned_kwh")
+def _sum(data: RunData, figure: str) -> float:
+    """Return the sum of a key figure over all of its places; 0 without it."""
+    return sum(float(told["value"] or 0.0) for (name, _), told in data.key_figures.items() if name == figure)
+
+
+def _split(whole: Mapping[str, float], part: Mapping[str, float], rest: str) -> dict[str, float]:
+    """Return a flow in two, of which one is a known `part` of it; as it is where the part is nothing or no part of it."""
+    (all_of_it,), (known,) = whole.values(), part.values()
+    if not 0.0 < known <= all_of_it * (1.0 + 1e-6):
+        return dict(whole)
+    return {**part, rest: max(all_of_it - known, 0.0)}
 
 
 def _braking_resistors(data: RunData) -> float | None:
@@ -135,11 +147,12 @@ def _stage(name: str, gains: Mapping[str, float], spends: Mapping[str, float]) -
     return Stage(name, tr(words), kind, tuple(into), tuple(out))
 
 
-def _supply(electric: Mapping[str, float], trains: Mapping[str, float], returned: float) -> list[Stage]:
-    source = electric.get("source", 0.0)
-    spends = {"conductor": electric.get("conductor", 0.0), "load": electric.get("load", 0.0)}
-    regulation = {"regulation": electric.get("regulation", 0.0)}
-    if source <= regulation["regulation"]:  # trains and loads feed the grid
+def _supply(data: RunData, electric: Mapping[str, float], returned: float) -> list[Stage]:
+    source, drop = electric.get("source", 0.0), electric.get("regulation", 0.0)
+    regulation = _split({"regulation": drop}, {"plant_heat": _sum(data, "plant_heat_kwh")}, "commutation")
+    heat = _split({"conductor": electric.get("conductor", 0.0)}, {"feeders": _sum(data, "feeder_heat_kwh")}, "lines")
+    spends = heat | {"load": electric.get("load", 0.0)}
+    if source <= drop:  # trains and loads feed the grid
         return [_stage("network", {RETURNED: returned}, spends | regulation | {"grid": -source})]
     return [_stage("substations", {SOURCE: source}, regulation), _stage("network", {RETURNED: returned}, spends)]
 

@@ -107,6 +107,17 @@ def test_runs_that_lack_a_part_balance_too(no_overlap, parts, missing):
     no_overlap(figure, figure.axes[0].texts)
 
 
+def test_heat_of_plant_and_feeders_is_told_apart_where_it_is_known():
+    data = run_of()
+    figures = [key_figure("plant_heat_kwh", 30.0, "substation A"), key_figure("plant_heat_kwh", 20.0, "substation B"),
+               key_figure("feeder_heat_kwh", 120.0, "feeder A 1 low_km")]  # fmt: skip
+    known = RunData(Results(data.results.run, [*data.results.key_figures, *figures], {}), data.scenario)
+    _, spent = sums(energy_stages(known))
+    assert (spent["plant_heat"], spent["commutation"]) == (50.0, 150.0)
+    assert (spent["feeders"], spent["lines"]) == (120.0, 380.0)
+    assert not {"regulation", "conductor"} & {*spent}
+
+
 def test_a_difference_between_ledgers_is_a_flow_of_its_own():
     _, spent = sums(energy_stages(run_of(electric=ELECTRIC | {"source": 10_400.0})))
     assert spent["rest"] == pytest.approx(400.0)

@@ -15,9 +15,10 @@ from matplotlib.figure import Figure
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.places import LinePlaces, told
 from tractionpower.reporting.figures.base.axes import draw_limits, panels_of_lines, voltage_range, with_margin
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.base.style import COLOURS, DASHES, PAGE, SMALLEST, STYLE, new_figure, save_all
 from tractionpower.reporting.figures.supply.km_axis import name_devices, name_stations
-from tractionpower.reporting.figures.supply.panels import LETTER_7, head, legend_below, shortened
+from tractionpower.reporting.figures.supply.panels import LETTER_7, head, legend_below
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.results.results import Results
 

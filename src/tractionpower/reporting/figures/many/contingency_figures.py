@@ -18,6 +18,7 @@ from tractionpower.reporting.facts.device_words import window_told
 from tractionpower.reporting.facts.outages import COMPUTED, Outages, grid_told
 from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.figures.base.axes import draw_limits, panels_of_lines, voltage_range, with_margin
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.base.style import (
     BLUE,
     GREEN,
@@ -33,7 +34,7 @@ from tractionpower.reporting.figures.base.style import (
     new_figure,
 )
 from tractionpower.reporting.figures.supply.km_axis import name_devices, name_stations
-from tractionpower.reporting.figures.supply.panels import LETTER_7, head, in_lines, legend_below, shortened
+from tractionpower.reporting.figures.supply.panels import LETTER_7, head, in_lines, legend_below
 from tractionpower.reporting.figures.supply.ratings_figures import BARE, TIGHT_PERCENT, margin_colour
 from tractionpower.reporting.texts import number, recorded, tr, trn
 

@@ -14,9 +14,10 @@ from matplotlib.figure import Figure
 
 from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages, grid_told
 from tractionpower.reporting.facts.places import told
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.base.style import INK, PAGE, SMALLEST, STYLE, VERMILION, new_figure
 from tractionpower.reporting.figures.supply.km_axis import name_devices, name_stations
-from tractionpower.reporting.figures.supply.panels import LETTER_7, head, shortened
+from tractionpower.reporting.figures.supply.panels import LETTER_7, head
 from tractionpower.reporting.figures.supply.useful_figures import colour_classes
 from tractionpower.reporting.texts import number, tr
 

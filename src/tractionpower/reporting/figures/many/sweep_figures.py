@@ -14,8 +14,9 @@ from matplotlib.figure import Figure
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.sweep_data import WORDS, SweepData
 from tractionpower.reporting.figures.base.axes import draw_limits
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, PAGE, SMALLEST, STYLE, VERMILION, new_figure, save_all
-from tractionpower.reporting.figures.supply.panels import LETTER_7, head, legend_below, once, shortened
+from tractionpower.reporting.figures.supply.panels import LETTER_7, head, legend_below, once
 from tractionpower.reporting.texts import number, tr
 from tractionpower.results.results import Results
 from tractionpower.studies.sweep.cases import number_of

@@ -8,9 +8,9 @@ from typing import Any
 from matplotlib.axes import Axes
 
 from tractionpower.reporting.facts.places import Device
-from tractionpower.reporting.figures.base.labels import fitting
+from tractionpower.reporting.figures.base.labels import fitting, shortened
 from tractionpower.reporting.figures.base.style import GREY, INK, SMALLEST
-from tractionpower.reporting.figures.supply.panels import LETTER_7, shortened
+from tractionpower.reporting.figures.supply.panels import LETTER_7
 from tractionpower.reporting.texts import tr
 
 LEVELS = 2

@@ -13,6 +13,7 @@ from matplotlib.textpath import text_to_path
 from numpy.typing import NDArray
 
 from tractionpower.reporting.figures.base.axes import clock_label, set_clock
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.base.style import PAGE, SMALLEST, TITLE, new_figure
 
 LETTER_7 = 0.054
@@ -23,15 +24,6 @@ LEGEND_LETTERS = 96
 
 MOST_PANELS = 20
 """Panels of one figure."""
-
-
-def shortened(text: str, most: int) -> str:
-    """Return a text of at most so many letters.
-
-    >>> shortened("Grodzisk", 8), shortened("Grodzisk", 5)
-    ('Grodzisk', 'Grod…')
-    """
-    return text if len(text) <= most else f"{text[: most - 1].rstrip()}…"
 
 
 def fitted(text: str, inches: float) -> str:

@@ -17,7 +17,7 @@ from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.facts.series import interval, peaks_kept
 from tractionpower.reporting.figures.base.axes import clock_label, panels_of_lines, set_clock, with_margin
-from tractionpower.reporting.figures.base.labels import fitting
+from tractionpower.reporting.figures.base.labels import fitting, shortened
 from tractionpower.reporting.figures.base.style import (
     BLUE,
     COLOURS,
@@ -33,7 +33,7 @@ from tractionpower.reporting.figures.base.style import (
     new_figure,
 )
 from tractionpower.reporting.figures.supply.km_axis import MOST_LETTERS, ROW, name_devices, name_stations
-from tractionpower.reporting.figures.supply.panels import head, legend_below, once, shortened
+from tractionpower.reporting.figures.supply.panels import head, legend_below, once
 from tractionpower.reporting.texts import number, recorded, tr
 
 INCHES = PAGE - 1.4

@@ -20,6 +20,7 @@ from tractionpower.reporting.facts.device_words import (
     zones_along_line,
 )
 from tractionpower.reporting.facts.run_data import RunData
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.base.style import (
     BLUE,
     COLOURS,
@@ -34,7 +35,7 @@ from tractionpower.reporting.figures.base.style import (
     VERMILION,
     new_figure,
 )
-from tractionpower.reporting.figures.supply.panels import head, legend_below, most_loaded, shortened, time_panels
+from tractionpower.reporting.figures.supply.panels import head, legend_below, most_loaded, time_panels
 from tractionpower.reporting.texts import number, tr
 
 MOST_BARS = 56

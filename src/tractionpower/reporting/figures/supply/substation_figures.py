@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.facts.substation_loads import along_line
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.base.style import BLUE, COLOURS, DASHES, INK, ORANGE, PAGE, SKY, SMALLEST, STYLE, new_figure
-from tractionpower.reporting.figures.supply.panels import head, legend_below, most_loaded, once, shortened
+from tractionpower.reporting.figures.supply.panels import head, legend_below, most_loaded, once
 from tractionpower.reporting.texts import number, tr
 
 Array = NDArray[Any]

@@ -12,8 +12,9 @@ from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 
 from tractionpower.reporting.facts.run_data import RunData
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.base.style import INK, PAGE, SMALLEST, STYLE, VERMILION, new_figure
-from tractionpower.reporting.figures.supply.panels import head, shortened
+from tractionpower.reporting.figures.supply.panels import head
 from tractionpower.reporting.texts import mark, number, tr
 
 DEFINITIONS = {

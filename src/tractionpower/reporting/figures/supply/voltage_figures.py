@@ -22,6 +22,7 @@ from tractionpower.reporting.figures.base.axes import (
     voltage_range,
     with_margin,
 )
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.base.style import (
     BLUE,
     COLOURS,
@@ -37,7 +38,7 @@ from tractionpower.reporting.figures.base.style import (
     new_figure,
 )
 from tractionpower.reporting.figures.supply.km_axis import name_devices, name_stations
-from tractionpower.reporting.figures.supply.panels import head, legend_below, once, shortened
+from tractionpower.reporting.figures.supply.panels import head, legend_below, once
 from tractionpower.reporting.texts import number, recorded, tr
 
 INCHES = PAGE - 1.15
