@@ -48,7 +48,7 @@ GIVEN_WORDS = {"potential": mark("height lost"), "kinetic": mark("kinetic energy
 """What flows are that go in where others of their name go out."""
 
 STAGES: dict[str, tuple[str, Kind]] = {
-    "substations": (mark("Substations"), "electric"),
+    "substations": (mark("Substations (E I)"), "electric"),
     "network": (mark("Contact line"), "electric"),
     "trains": (mark("Trains at the pantograph"), "electric"),
     "wheel": (mark("Work at the wheel"), "mechanical"),
