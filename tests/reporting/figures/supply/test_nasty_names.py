@@ -2,7 +2,6 @@
 
 import pytest
 from fake_runs import small_run
-from matplotlib.text import Text
 
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.figures.base.style import finish
@@ -38,10 +37,8 @@ def test_no_text_leaves_its_figure(draw, name):
     figure = draw(renamed(name))
     finish(figure)
     figure.canvas.draw()
-    for text in figure.findobj(Text):
-        if text.get_visible() and text.get_text().strip():
-            box = text.get_window_extent()
-            assert box.x1 > box.x0
-            assert figure.bbox.x0 - 1.0 <= box.x0, text.get_text()
-            assert box.x1 <= figure.bbox.x1 + 1.0, text.get_text()
+    width, height = figure.get_size_inches()
+    box = figure.get_tightbbox()
+    assert -0.01 <= box.x0 < box.x1 <= width + 0.01
+    assert -0.01 <= box.y0 < box.y1 <= height + 0.01
     assert figure.get_suptitle()[:3] == name.strip()[:3]
