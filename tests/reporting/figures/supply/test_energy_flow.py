@@ -98,7 +98,6 @@ def test_runs_that_lack_a_part_balance_too(no_overlap, parts, missing):
     stages = energy_stages(data)
     given, spent = sums(stages)
     assert not missing & {*given, *spent}
-    assert "rest" not in spent or given
     figure = energy_flow(data)
     layout = lay_out(stages)
     recovered = sum(band.kwh for band in layout.bands if len(band.corners) > 3 and not band.tip and band.name in given and

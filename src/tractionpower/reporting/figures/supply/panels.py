@@ -122,7 +122,7 @@ def time_panels(count: int, begin: float, end: float) -> tuple[Figure, Sequence[
         axes.set_frame_on(False)
         axes.grid(visible=False)
         axes.tick_params(left=False, labelleft=False)
-    set_clock(panels[0], begin, end, 8 if columns == 1 else 6)
+    set_clock(panels[0], begin, end, 7 if columns == 1 else 6)
     panels[0].set_xlim(begin, end)
     for axes in grid[-1]:
         axes.set_xlabel(clock_label(panels[0]), fontsize=SMALLEST)

@@ -191,7 +191,7 @@ def rail_potential_over_time(data: RunData) -> Figure | None:
         if maps:
             _draw_maps(figure, panels[1:], data, maps)
         times = rails["time_s"]
-        set_clock(panels[0], float(times.min()), float(times.max()), 8)
+        set_clock(panels[0], float(times.min()), float(times.max()), 7)
         panels[0].set_xlim(float(times.min()), float(times.max()))
         panels[-1].set_xlabel(clock_label(panels[0]), fontsize=8)
         every = interval(np.unique(times))
