@@ -309,11 +309,11 @@ def worst_utilisation(outages: Outages, title: str) -> Figure | None:
                 axes.plot([base, use], [k, k], color=GREY, linewidth=1.0, zorder=1)
                 axes.plot([base], [k], "o", color=BLUE, markersize=4.5, markerfacecolor="white")
             axes.plot([use], [k], "o", color=margin_colour(use, permitted), markersize=5.0)
-            text = f"{number(use, 0)} %, {window_told(row['window_s'])}: {shortened(outages.told(row['case']), 46)}"
+            text = f"{number(use, 0)} %, {window_told(row['window_s'])}: {shortened(outages.told(row['case']), 54)}"
             axes.annotate(text, (use, k), (6, 0), textcoords="offset points", va="center", fontsize=SMALLEST, bbox=BARE)
         axes.axvline(permitted, color=INK, linewidth=0.9, linestyle=(0, (5, 3)))
         top = float(shown["utilisation_percent"].max())
-        axes.set_xlim(0.0, 2.9 * max(top, permitted))
+        axes.set_xlim(0.0, 3.2 * max(top, permitted))
         _name_rows(axes, [str(device) for device in shown["device"]])
         tight = TIGHT_PERCENT / 100.0 * permitted
         axes.set_xticks([tick for tick in axes.get_xticks() if tick <= 1.1 * max(top, permitted)])
