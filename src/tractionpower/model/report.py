@@ -12,19 +12,22 @@ Language = Literal["en", "pl"]
 FigureFormat = Literal["png", "svg", "pdf"]
 
 SHEETS = (
-    "Cover", "Acceptance", "Assumptions",
-    "Feasibility", "What would save it", "Delays", "Sections", "Lost time",
-    "Ratings", "Substation ratings", "Unit ratings", "Units", "Feeder ratings", "Contact line", "Return feeders",
+    "Cover", "Acceptance", "Assumptions", "Defaults",
+    "Feasibility", "What would save it", "Delays", "Delays by cause", "Sections", "Lost time",
+    "Ratings", "Units", "Substation ratings", "Feeder ratings", "Contact line", "Return circuit ratings", "Other ratings",
     "Ratings by window", "Loads by window", "Peaks", "Breakers", "Demand", "Sharing", "Current duration", "Voltage durations",
     "Useful voltage", "Useful voltage by hour",
-    "Outages", "All cases", "Device envelope", "Envelope", "Delays in outages",
+    "Outages", "Outage voltages", "Outage loads", "Outage trains", "Outage heat map", "What fails", "Device envelope", "Envelope",
+    "Delays in outages",
     "Variants", "Best and worst", "Differences", "Verdicts", "All figures", "Inputs that differ",
     "Run", "Zones", "Cases", "Other devices",
     "Trains", "Timetable", "Calls", "Voltages", "Substations", "Feeders", "Return circuit", "Rail potential",
-    "Energy", "Losses", "Key figures", "Charts",
-    "Extract trains", "Voltage profile", "Extract loads", "Load duration", "Events",
-    "Inputs study", "Inputs line", "Inputs supply", "Inputs stock", "Inputs timetable", "Inputs limits",
-    "Model", "Not covered", "Solver evidence", "Definitions", "Errors", "Values",
+    "Energy", "Train energy", "Losses", "Key figures", "Charts",
+    "Extract trains", "Extract worst train", "Voltage profile", "Voltage histogram", "Extract loads", "Extract substation",
+    "Load duration", "Events",
+    "Inputs study", "Inputs line", "Inputs supply", "Inputs equipment", "Inputs conductors", "Inputs stock", "Inputs trains",
+    "Inputs vehicles", "Inputs timetable", "Inputs limits",
+    "Model", "Not covered", "Solver evidence", "Definitions", "Columns", "Errors", "Values",
 )  # fmt: skip
 """Names of the sheets of all workbooks, to tell a misspelt one of a template."""
 
