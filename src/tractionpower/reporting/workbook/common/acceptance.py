@@ -51,7 +51,7 @@ _SENSES = {"at_least": mark("not below"), "at_most": mark("not above")}
 
 _COLUMNS = (
     Column("no.", "0"),
-    Column("what is judged", widest=34),
+    Column("what is judged", "beside", 34),
     Column("found", "0.0", key="found"),
     Column("must be", "beside", 10),
     Column("limit value", "0.0", key="limit"),
