@@ -1,5 +1,6 @@
 import pytest
 from fake_results import changed
+from fake_sizing import outages
 from read_workbook import read_table
 from small_studies import load, make_scenario, run_in_memory
 
@@ -133,3 +134,19 @@ def test_defaults_are_counted_where_they_act(small, case):
     stations = len(case[1].supply.substations)
     assert rows["supply: substations", "grid voltage [p.u.]"]["held by"] == f"{stations} of {stations}"
     assert ("supply: substations", "trip delay [s]") not in rows  # no breaker trips
+
+
+def test_a_study_of_many_cases_speaks_of_its_base(case, sheets):
+    results, scenario = case
+    base = "What stands here is that of the base case; every other case differs from it in what its changes tell."
+    assert base in _told(sheets(assumptions, outages(scenario), scenario))
+    assert base not in _told(sheets(assumptions, results, scenario))
+
+
+def test_nothing_switches_only_where_nothing_can(case, sheets):
+    results, scenario = case
+    still = "Nothing switches during the run: all devices keep their normal state, and no breaker trips."
+    assert still in _told(sheets(assumptions, results, scenario))
+    stations = tuple(each.model_copy(update={"trip_current_a": 3000.0}) for each in scenario.supply.substations)
+    supply = scenario.supply.model_copy(update={"substations": stations})
+    assert still not in _told(sheets(assumptions, results, _with(scenario, supply=supply)))

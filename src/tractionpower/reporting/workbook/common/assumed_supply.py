@@ -44,14 +44,11 @@ def supply(facts: Facts) -> Iterator[Assumption]:
     yield from _conductors(facts)
     yield from _rails(facts)
     devices = facts.scenario.supply
-    if not devices.switch_events and not any(
-        row.trip_current_a for row in (*devices.substations, *devices.feeders, *devices.section_cabins)
-    ):
-        yield Assumption(
-            tr("Nothing switches during the run: all devices keep their normal state, and no breaker trips."),
-            tr("network"),
-            tr(OF_STUDY),
-        )
+    breakers = (*devices.substations, *devices.feeders, *devices.section_cabins)
+    moves = devices.switch_events or any(row.trip_current_a for row in breakers) or devices.voltage_limiting_devices
+    if not moves:
+        text = tr("Nothing switches during the run: all devices keep their normal state, and no breaker trips.")
+        yield Assumption(text, tr("network"), tr(OF_STUDY))
 
 
 def _substations(facts: Facts) -> Iterator[Assumption]:

@@ -14,7 +14,7 @@ from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.common import assumed_supply, assumed_trains
 from tractionpower.reporting.workbook.common.assumption import Assumption, figure, names
 from tractionpower.reporting.workbook.common.declared import Declared, declared, words_of
-from tractionpower.reporting.workbook.common.inputs import used_limits
+from tractionpower.reporting.workbook.common.inputs import MANY, used_limits
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts, limit_in_words
 from tractionpower.reporting.workbook.frame.page import Column, heading_of
@@ -89,6 +89,11 @@ def _method(facts: Facts) -> Iterator[Assumption]:
     scenario = facts.scenario
     step = facts.run.get("step_s", scenario.clock.step_s)
     trains, network = tr("trains"), tr("network")
+    if facts.run.get("kind") in MANY:
+        yield Assumption(
+            tr("What stands here is that of the base case; every other case differs from it in what its changes tell."),
+            tr("all cases"), tr("of the study"),
+        )  # fmt: skip
     if not scenario.runs:
         yield Assumption(tr("A network calculation without trains: fixed loads alone take current."), network, tr("of the study"))
     elif facts.run.get("coupling", scenario.coupling) == "full":
