@@ -14,7 +14,7 @@ from small_studies import load, make_scenario, run_in_memory
 from tractionpower.reporting.workbook import write_workbook
 
 SHEETS = [
-    "Cover", "Acceptance", "Trains", "Calls", "Substations", "Energy", "Key figures", "Charts",
+    "Cover", "Acceptance", "Timetable", "Trains", "Train energy", "Voltages", "Substations", "Energy", "Key figures", "Charts",
     "Extract trains", "Extract worst train", "Voltage histogram", "Voltage profile", "Extract loads", "Extract substation",
     "Load duration", "Events",
     "Assumptions", "Defaults", "Inputs study", "Inputs supply", "Inputs conductors", "Inputs line", "Inputs trains",
@@ -55,9 +55,10 @@ def test_every_part_is_well_formed_and_tables_have_names_of_their_own(nasty_file
 
 
 def test_long_tables_repeat_and_freeze_their_header(small):
-    for name in ("Trains", "Calls", "Key figures", "Events", "Definitions", "Extract trains"):
+    for name in ("Timetable", "Trains", "Train energy", "Voltages", "Key figures", "Events", "Definitions", "Extract trains"):
         sheet = small[name]
-        header = next(iter(sheet.tables.values())).ref.split(":")[0][1:]
+        header = int(sheet.freeze_panes[1:]) - 1
+        assert any(table.ref.startswith(f"A{header}:") for table in sheet.tables.values())
         assert sheet.print_title_rows == f"${header}:${header}"
         assert sheet.freeze_panes == f"B{int(header) + 1}"
 
@@ -81,7 +82,7 @@ def test_no_name_becomes_a_formula_and_none_is_lost(nasty_file):
     assert formulas
     assert not [formula for formula in formulas for name in NASTY if name.strip("=+-@#") in formula and len(name) > 3]
     book = openpyxl.load_workbook(nasty_file)
-    for sheet in ("Trains", "Calls", "Inputs timetable", "Extract trains"):
+    for sheet in ("Timetable", "Trains", "Voltages", "Inputs timetable", "Extract trains"):
         assert set(NASTY) <= set(texts(book[sheet])), sheet
     assert book["Cover"]["A1"].value == '=HYPERLINK("x") & \ufffd <b>'
     assert book["Cover"]["A1"].data_type == "s"
@@ -99,7 +100,9 @@ def test_a_network_calculation_has_no_sheets_of_trains(write):
     scenario = make_scenario(load("depot"))
     results, *_ = run_in_memory(scenario)
     book = write(results, scenario)
-    assert {"Trains", "Calls", "Extract trains", "Inputs stock", "Inputs timetable"}.isdisjoint(book.sheetnames)
+    assert {"Timetable", "Trains", "Train energy", "Voltages", "Extract trains", "Inputs stock", "Inputs timetable"}.isdisjoint(
+        book.sheetnames
+    )
     assert {"Substations", "Voltage profile", "Load duration", "Energy"} <= set(book.sheetnames)
     assert any("has no trains" in text for text in texts(book["Cover"]))
 
@@ -108,7 +111,7 @@ def test_missing_tables_leave_their_sheets_out(case, write):
     results, scenario = case
     bare = type(results)(results.run, [], {})
     book = write(bare, scenario)
-    assert {"Calls", "Events", "Extract trains", "Load duration"}.isdisjoint(book.sheetnames)
+    assert {"Timetable", "Events", "Extract trains", "Load duration"}.isdisjoint(book.sheetnames)
     assert "Cover" in book.sheetnames
 
 

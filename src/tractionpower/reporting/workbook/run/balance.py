@@ -101,8 +101,8 @@ def _balance(page: Page) -> None:
     words = mark("heat in contact lines and return circuit")
     lines.add("balance_lines", words, losses - heat, mark("all losses less feeders"), text)
     if facts.trains:
-        lines.add("balance_taken", mark("trains, taken from the line"), taken, other, "{trains_sum_taken}")
-        lines.add("balance_returned", mark("trains, returned into the line"), returned, other, "{trains_sum_returned}")
+        lines.add("balance_taken", mark("trains, taken from the line"), taken, other, "{trains_all_taken}")
+        lines.add("balance_returned", mark("trains, returned into the line"), returned, other, "{trains_all_returned}")
     if facts.scenario.supply.loads:
         lines.add("balance_loads", mark("fixed loads"), loads, mark("sum of sheet Substations"), "{loads_energy}")
     text = "{balance_busbars}-{balance_feeders}-{balance_lines}"
@@ -113,7 +113,7 @@ def _balance(page: Page) -> None:
     if facts.trains:
         for key, words in _USES.items():
             name = f"balance_{key}"
-            lines.add(name, words, _sum_of(facts, ENERGIES[key]), other, f"{{trains_sum_{key}}}", counts=key != "refused")
+            lines.add(name, words, _sum_of(facts, ENERGIES[key]), other, f"{{trains_all_{key}}}", counts=key != "refused")
     _write(page, lines)
 
 
@@ -189,7 +189,7 @@ def _category(
         (mass_t(facts, str(train["train"])) or 0.0) * (facts.value(place_of(train), "length_km") or 0.0) for train in trains
     )
     net = known["taken"] - known["returned"]
-    share = Formula("IF({trains_sum_net}=0,0,100*{net}/{trains_sum_net})", 100.0 * net / all_net if all_net else 0.0)
+    share = Formula("IF({trains_all_net}=0,0,100*{net}/{trains_all_net})", 100.0 * net / all_net if all_net else 0.0)
     specific = Formula("IF({tkm}>0,1000*{net}/{tkm},0)", 1000.0 * net / gross if gross > 0.0 else 0.0)
     count = Formula("SUMPRODUCT(EXACT({trains_category},{category})*1)", len(trains))
     return [

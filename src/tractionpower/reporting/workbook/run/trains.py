@@ -196,7 +196,7 @@ def _energies(book: Book) -> None:
     for key in ("category", "tkm", "net", *ENERGIES):
         book.define(f"trains_{key}", page, block.cells(key))
         if key != "category":
-            book.define(f"trains_sum_{key}", page, block.cell(key, row))
+            book.define(f"trains_all_{key}", page, block.cell(key, row))
 
 
 def _energy(facts: Facts, train: dict[str, Any]) -> list[Any]:
