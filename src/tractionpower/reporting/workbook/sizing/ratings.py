@@ -9,6 +9,7 @@ import pandas as pd
 from openpyxl.utils import absolute_coordinate
 
 from tractionpower.model.base import format_time
+from tractionpower.model.ratings import DutyRow
 from tractionpower.reporting.facts.device_words import KINDS, kind_order
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.texts import mark, number, recorded, tr
@@ -59,11 +60,10 @@ _KINDS = (
     Column("sheet", "beside", 24),
 )
 _DUTIES = (
-    Column("duty class"),
+    Column("duty class", widest=34),
     Column("window", "beside"),
-    Column("multiple of the rated current", "0.00", key="multiple"),
-    Column("meaning", widest=44),
-    Column("how it is known", widest=40),
+    Column("multiple", "0.00", key="multiple"),
+    Column("status", "beside"),
 )
 
 
@@ -210,16 +210,16 @@ def _duties(book: Book, page: Page) -> None:
     if not rows:
         return
     page.section("Duty classes")
-    cells = (
-        (row.duty_class, window_in_words(row.window_s), row.multiple, recorded(row.meaning),
-         f"{tr(KNOWN_AS.get(row.status, row.status))} ({recorded(row.source)})")
-        for row in rows
-    )  # fmt: skip
+    cells = ((_duty(row), window_in_words(row.window_s), row.multiple, recorded(row.status)) for row in judge.duties)
     block = page.table(_DUTIES, cells)
     for at, row in enumerate(rows, block.first):
         cell = block.cell("multiple", at)
         page.sheet[cell]._style = page.styles["editable 0.00"]
         book.define(judge.duty_cell(row.duty_class, row.window_s), page, cell)
+
+
+def _duty(row: DutyRow) -> str:
+    return f"{row.duty_class}: {recorded(row.meaning)}" if row.meaning else row.duty_class
 
 
 def _sources(page: Page, ruling: pd.DataFrame) -> None:
