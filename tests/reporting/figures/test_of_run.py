@@ -9,7 +9,7 @@ from matplotlib.text import Text
 from tractionpower.model.report import ReportFigures
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.figures import of_run as figures
-from tractionpower.reporting.figures.base.drawing import drawing
+from tractionpower.reporting.figures.base.drawing import drawing, wanted
 from tractionpower.reporting.figures.base.style import finish, new_figure
 from tractionpower.reporting.figures.of_run import write_figures
 from tractionpower.reporting.figures.trains.run_graph import run_graphs
@@ -34,7 +34,8 @@ def names(folder):
 @pytest.fixture
 def quick(monkeypatch):
     """Let figures be empty: what they show is tested elsewhere, here it is their files that matter."""
-    monkeypatch.setattr(figures, "run_curves", lambda data: ((f"curves_{kind}", new_figure(1.0, 1.0)) for kind in data.kinds))
+    empty = lambda data: ((f"curves_{kind}", new_figure(1.0, 1.0)) for kind in data.kinds if wanted(f"curves_{kind}"))  # noqa: E731
+    monkeypatch.setattr(figures, "run_curves", empty)
     monkeypatch.setattr(figures, "train_figures", lambda data, chosen: ((name, new_figure(1.0, 1.0)) for name in chosen))
 
 

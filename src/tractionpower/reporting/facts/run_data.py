@@ -89,8 +89,11 @@ class RunData:
 
     @cached_property
     def kinds(self) -> dict[str, Train]:
-        """Kinds of trains of the timetable by name, those of most runs first."""
-        return kinds_of_trains((planned.run for planned in self.planned.values()), self.scenario.trains)
+        """Kinds of trains that ran, by name, those of most trains first; none without the table of trains."""
+        trains = self.table("trains")
+        ran = set() if trains is None else {str(name) for name in trains["train"].unique()}
+        runs = (planned.run for name, planned in self.planned.items() if name in ran)
+        return kinds_of_trains(runs, self.scenario.trains)
 
     @cached_property
     def ways(self) -> dict[str, dict[str, Any]]:

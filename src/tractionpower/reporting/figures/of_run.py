@@ -111,8 +111,6 @@ def _trains_to_draw(data: RunData) -> list[str]:
 
 def _write_curves(data: RunData, folder: Path) -> list[Path]:
     names = {name: stem for name, stem in stems(f"{CURVES}_{kind}" for kind in data.kinds).items() if wanted(name)}
-    if data.table("trains") is None or not names:
-        return []
     return [path for name, figure in run_curves(data) for path in save_as(figure, folder, names[name])]
 
 

@@ -72,7 +72,7 @@ def test_names_of_trains_do_not_overlap(line, no_overlap):
 
 
 def test_figures_of_the_trains_shown_and_none_of_an_earlier_run(tmp_path, line, journeys):
-    scenario = type("Study", (), {"line": line, "name": "a study", "supply": None})
+    scenario = type("Study", (), {"line": line, "name": "a study", "supply": None, "input_hash": "0123456789abcdef"})
     outcome = JourneyOutcome(tuple(journeys), 3000.0)
     paths = write_journey_figures(outcome, scenario, tmp_path, ["1", "IC 22/1"])
     names = {path.name for path in paths}

@@ -35,7 +35,7 @@ NAMES = 1.75
 BESIDE_LABEL = 0.7
 """Width of what stands beside the words of a legend [inches]."""
 
-ROUND_S = (1.0, 10.0, 60.0, 300.0, 900.0)
+ROUND_S = (1.0, 10.0, 60.0, 300.0, 900.0, 3600.0)
 """A graph begins and ends at multiples of one of these, so that ticks stand at its ends [s]."""
 
 MOST_NAMES = 40
