@@ -21,7 +21,8 @@ SHEETS = {
     },
     "size": {
         "Ratings by window": "ratings", "Loads by window": "ratings", "Peaks": "peaks",
-        "Useful voltage by hour": "useful_voltage", "Voltage durations": "voltage_durations", "Sharing": "sharing", "Demand": "demand",
+        "Useful voltage by hour": "useful_voltage", "Voltage durations": "voltage_durations", "Sharing": "sharing",
+        "Demand": "demand",
     },
     "contingency": {
         "Envelope": "envelope", "Device envelope": "device_envelope", "Delays in outages": "case_trains", "All cases": "cases",

@@ -4,7 +4,14 @@ from fake_results import make_case
 from tractionpower.model.report import Report
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
-from tractionpower.reporting.workbook.frame.page import Column, heading_of
+from tractionpower.reporting.workbook.frame.page import (
+    FIRST_PRINTED,
+    LONG_SCALE,
+    LONG_SHEET,
+    MOST_PRINTED,
+    Column,
+    heading_of,
+)
 
 
 @pytest.fixture
@@ -58,3 +65,36 @@ def test_a_long_text_gets_a_higher_row(book):
 )
 def test_headings_carry_the_unit(name, heading):
     assert heading_of(name) == heading
+
+
+def test_a_table_that_is_too_long_is_printed_in_part_and_the_page_says_so(book):
+    page = book.page("Long", "title")
+    block = page.table([Column("b"), Column("c")], [(k, k) for k in range(MOST_PRINTED + 1)], frozen=True)
+    page.section("Below it")
+    page.finish()
+    assert page.sheet.print_area == f"'Long'!$A$1:$B${block.first + FIRST_PRINTED - 1}"
+    assert page.sheet.oddFooter.center.text == f"printed: the first {FIRST_PRINTED} of {MOST_PRINTED + 1} rows"
+    whole = book.page("Whole", "title")
+    whole.table([Column("b")], [(k,) for k in range(MOST_PRINTED)], frozen=True)
+    whole.finish()
+    assert not whole.sheet.print_area
+
+
+def test_a_sheet_that_is_too_wide_takes_several_pages_and_repeats_its_first_column(book):
+    wide, narrow = book.page("Wide", "title"), book.page("Narrow", "title")
+    wide.table([Column(f"column {k}") for k in range(20)], [("x" * 30,) * 20])
+    narrow.table([Column(f"column {k}") for k in range(9)], [("x" * 30,) * 9])
+    for page, pages, columns in ((wide, 2, "$A:$A"), (narrow, 1, None)):
+        page.finish()
+        assert page.sheet.page_setup.fitToWidth == pages
+        assert page.sheet.print_title_cols == columns
+        assert int(page.sheet.page_setup.paperSize) == int(page.sheet.PAPERSIZE_A3)
+
+
+def test_a_long_narrow_sheet_is_printed_smaller(book):
+    long, short = book.page("Long one", "title"), book.page("Short one", "title")
+    for page, rows in ((long, LONG_SHEET), (short, 10)):
+        page.table([Column("b")], [(k,) for k in range(rows)], frozen=True)
+        page.finish()
+    assert (long.sheet.sheet_properties.pageSetUpPr.fitToPage, long.sheet.page_setup.scale) == (False, LONG_SCALE)
+    assert (short.sheet.sheet_properties.pageSetUpPr.fitToPage, short.sheet.page_setup.scale) == (True, None)

@@ -111,12 +111,12 @@ def test_the_profile_is_the_table(small, values, case):
 
 
 def test_extracts_print_their_beginning_and_say_so(small):
-    for name in ("Extract trains", "Voltage profile"):
+    for name in ("Extract trains", "Voltage profile", "Load duration"):
         sheet = small[name]
         rows = int(sheet.print_area.rpartition("$")[2])
         assert rows < 80 < sheet.max_row
         assert sheet.oddFooter.center.text.startswith("printed: the first ")
-    assert not small["Load duration"].print_area
+    assert not small["Substations"].print_area
 
 
 def test_a_run_without_voltage_has_neither_histogram_nor_worst_train(case, write):

@@ -45,6 +45,9 @@ MOST_WIDE = {"a4": 245.0, "a3": 350.0}
 MOST_PRINTED, FIRST_PRINTED = 1000, 60
 """Of a table with more rows than the first, as many as the second are printed: nobody reads a hundred pages of rows."""
 
+LONG_SHEET, LONG_SCALE, LONG_WIDE = 150, 75, 180.0
+"""A sheet of more printed rows than the first is printed at this scale [%], if it is no wider than the last [characters]."""
+
 LINE_POINTS = 15.0
 """Height of a line of text [pt]."""
 
@@ -233,6 +236,9 @@ class Page:
             paper = "a3" if width > WIDE else "a4"
         sheet.page_setup.paperSize = sheet.PAPERSIZE_A3 if paper == "a3" else sheet.PAPERSIZE_A4
         sheet.page_setup.fitToWidth = max(1, math.ceil(width / MOST_WIDE[paper]))
+        rows = self.next if self._last_printed is None else self._last_printed
+        if paper == "a4" and rows > LONG_SHEET and width <= LONG_WIDE and not sheet._charts:
+            sheet.sheet_properties.pageSetUpPr.fitToPage, sheet.page_setup.scale = False, LONG_SCALE
         if sheet.page_setup.fitToWidth > 1:
             sheet.print_title_cols = "A:A"
         for number, needed in self._needed.items():

@@ -23,7 +23,7 @@ FINE_S, MOST_FINE = (1, 10, 60, 300), 1500
 WINDOWS_S = (900, 3600, 7200)
 """Windows of the sliding means [s]; those that the run is shorter than are left out."""
 
-PRINTED = 40
+PRINTED = 22
 """Rows of an extract that are printed."""
 
 FIELDS = ("time_s", "substation", "power_kw")
@@ -57,7 +57,7 @@ def add(book: Book, drawn: Drawn) -> None:
     share = np.linspace(0.0, 1.0, 101)
     values = [np.quantile(power, 1.0 - share) for _, power in series.values()]
     columns = [Column(SHARE, "0", key="share"), *_power_columns(drawn.numbers)]
-    drawn.blocks["duration"] = page.table(columns, zip(share * 100.0, *values, strict=True), frozen=True)
+    drawn.blocks["duration"] = page.table(columns, zip(share * 100.0, *values, strict=True), frozen=True, printed=PRINTED)
 
 
 def period_of(seconds: float) -> int:
@@ -90,7 +90,7 @@ def _curves(book: Book, series: Series, drawn: Drawn) -> None:
     start = np.arange(first, last + 1) * float(period)
     drawn.spans["loads"] = float(start[0]), float(start[-1])
     columns = [Column(TIME, "time", key="time"), *_power_columns(drawn.numbers)]
-    drawn.blocks["loads"] = page.table(columns, zip(start, *means, strict=True), frozen=True)
+    drawn.blocks["loads"] = page.table(columns, zip(start, *means, strict=True), frozen=True, printed=PRINTED)
 
 
 def _most_loaded(book: Book, pair: tuple[Array, Array], drawn: Drawn) -> None:

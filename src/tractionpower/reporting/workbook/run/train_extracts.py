@@ -32,7 +32,7 @@ DEAD_V = 1.0
 MOST_STATIONS = 28
 """Names beside a train graph that do not touch each other."""
 
-PRINTED = 40
+PRINTED = 22
 """Rows of an extract that are printed."""
 
 BANDS = (("u_min2", "low"), ("u_max1", "high"))

@@ -28,7 +28,7 @@ MOST_NAMES = 40
 VOLTAGE_TICK = 200.0
 """The axis of voltages begins and ends at a multiple of this [V]."""
 
-PRINTED = 60
+PRINTED = 22
 """Rows that are printed: the chart shows them all."""
 
 
