@@ -35,6 +35,7 @@ _MEANS = (
 )  # fmt: skip
 _ENERGY = ("energy_measured_kwh", "energy_computed_kwh", "energy_error_percent")
 _DATA = ("column", "share_percent", "shift_s", "smoothing_s", "gaps", "longest_gap_s")
+_ALIGN = {"time": mark("time"), "distance": mark("distance")}
 _HEADINGS = {
     "rows": mark("steps that have both"), "mean_error": mark("bias (mean error)"), "largest_error": mark("largest error"),
     "rms_error": mark("RMS error"), "rms_measured": mark("RMS measured"), "rms_computed": mark("RMS computed"),
@@ -67,7 +68,7 @@ def _errors(page: Page, results: Results, errors: pd.DataFrame, places: dict[str
         (tr("measurement"), told.get("name")),
         (tr("source"), told.get("source")),
         (tr("file"), told.get("file")),
-        (tr("compared by"), tr(told.get("align") or "")),
+        (tr("compared by"), tr(_ALIGN.get(str(told.get("align")), ""))),
         (tr("shift, added to its times [s]"), told.get("shift_s") if told.get("align") == "time" else None),
         (tr("how the shift is known"), tr("found by correlation") if told.get("shift_found") else tr("given")),
         (tr("correlation"), told.get("correlation")),

@@ -6,6 +6,7 @@ from read_workbook import read_table, texts
 from small_studies import load, make_scenario
 
 from tractionpower.reporting.workbook import write_workbook
+from tractionpower.results.results import Results
 from tractionpower.studies.sweep.study import sweep
 
 E = "supply.substations[*].no_load_voltage_v"
@@ -79,3 +80,12 @@ def test_a_case_that_changes_a_limit_is_held_against_its_own(tmp_path):
     rows = read_table(load_workbook(write_workbook(results, scenario, tmp_path / "x.xlsx"), data_only=True)["Variants"])
     assert [bool(fails) for fails in results.table("cases")["fails"]] == [row["verdict"] == "violated" for row in rows]
     assert rows[-1]["verdict"] == "violated"
+
+
+def test_a_sweep_without_a_single_case_has_a_workbook(tmp_path, results):
+    source = dict(results._source)
+    source |= {name: results._source[name].slice(0, 0) for name in ("cases", "case_changes", "differences")}
+    run = results.run | {"verdicts": [], "sweep": results.run["sweep"] | {"extremes": {}}}
+    book = load_workbook(write_workbook(Results(run, [], source), _scenario(), tmp_path / "x.xlsx"))
+    assert "No case has ended." in texts(book["Variants"])
+    assert "Differences" not in book.sheetnames

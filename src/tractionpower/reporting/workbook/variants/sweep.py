@@ -17,22 +17,32 @@ from tractionpower.reporting.workbook.variants.sweep_cases import Cases, Cells
 from tractionpower.reporting.workbook.variants.sweep_charts import add_charts
 from tractionpower.reporting.workbook.variants.sweep_differences import add_best, add_differences
 from tractionpower.reporting.workbook.variants.sweep_tables import add_figures, add_variants, add_verdicts
-from tractionpower.reporting.workbook.variants.sweep_words import differing_figures, heading
+from tractionpower.reporting.workbook.variants.sweep_words import STATUSES, differing_figures, heading
 from tractionpower.results.results import Results
 
 MOST_SAID = 6
 """Figures whose best and worst case stand on the cover; sheet Best and worst has all of them."""
 
 ENDS = {"best": mark("best"), "worst": mark("worst"), "lowest": mark("lowest"), "highest": mark("highest")}
-STATUSES = {
-    "complete": mark("complete"), "flagged": mark("flagged"), "refused": mark("refused"), "failed": mark("failed"),
-}  # fmt: skip
 
 
 def build(results: Results, scenario: Scenario, report: Report) -> Book:
     """Return the workbook; a sheet that would be empty is left out."""
     book, data = Book(Facts(results, scenario), report), SweepData(results, scenario)
     front = book.page("Cover", shorten(tr("{study}: variants", study=book.facts.study), TITLE_LENGTH))
+    if len(data.cases):
+        _tables(book, data)
+    else:
+        book.page("Variants", "Variants: what each case sets, and what came of it").line("No case has ended.")
+    for add in (assumptions.add, inputs.add, definitions.add, not_covered.add, evidence.add, acceptance.add):
+        add(book)
+    fill_in(book, front, (lambda _: _head(data), lambda _: _verdicts(data), lambda _: _trust(data)))
+    book.finish()
+    return book
+
+
+def _tables(book: Book, data: SweepData) -> None:
+    """Add the sheets of the cases."""
     cases, cells = Cases(data), Cells()
     variants = add_variants(book, data, cases, cells)
     add_figures(book, data, cases, cells)
@@ -43,11 +53,6 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
         add_charts(book, data, cases, cells, variants)
         add_verdicts(book, cases, cells)
     book.pages.append(others)
-    for add in (assumptions.add, inputs.add, definitions.add, not_covered.add, evidence.add, acceptance.add):
-        add(book)
-    fill_in(book, front, (lambda _: _head(data), lambda _: _verdicts(data), lambda _: _trust(data)))
-    book.finish()
-    return book
 
 
 def _head(data: SweepData) -> Iterator[Said]:
@@ -75,7 +80,7 @@ def _verdicts(data: SweepData) -> Iterator[Said]:
         ends = (
             tr(
                 "{end} {value} (case {case}: {subject})",
-                end=tr(ENDS[word]), value=number(one["value"]), case=one["case"], subject=subjects[one["case"]],
+                end=tr(ENDS[word]), value=number(one["value"]), case=one["case"], subject=subjects.get(one["case"], ""),
             )
             for word, one in extremes[name].items()
         )  # fmt: skip

@@ -16,6 +16,7 @@ from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column
 from tractionpower.reporting.workbook.variants.sweep_cases import CASE, NUMBER, Cases, Cells, limit_cell, shade, subject_of
 from tractionpower.reporting.workbook.variants.sweep_words import (
+    STATUSES,
     heading,
     higher_is_better,
     main_figures,
@@ -102,7 +103,7 @@ def _case_row(cases: Cases, row: Mapping[Any, Any], told: tuple[list[str], list[
         yield from (_value(own.get(path)) for path in paths)
     odd = set(data.cases["status"]) != {"complete"}
     if odd:
-        yield tr(row["status"])
+        yield tr(STATUSES.get(row["status"], row["status"]))
     count = cases.violated(case)
     if count is None:
         yield from (tr(OPEN), None)
@@ -115,7 +116,7 @@ def _case_row(cases: Cases, row: Mapping[Any, Any], told: tuple[list[str], list[
         yield None if rank is None else Formula(_rank_formula(cases.by_ranking), rank)
     yield from (cases.value(row, name) for name in figures)
     if odd:
-        yield row["reason"]
+        yield recorded(str(row["reason"]))
 
 
 def _rank_formula(name: str) -> str:

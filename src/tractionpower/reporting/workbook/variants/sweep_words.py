@@ -51,6 +51,12 @@ COUNTS = (
 """Figures that are whole numbers."""
 
 
+STATUSES = {
+    "complete": mark("complete"), "flagged": mark("flagged"), "refused": mark("refused"), "failed": mark("failed"),
+}  # fmt: skip
+"""How a case ended."""
+
+
 def heading(name: str) -> str:
     """Return the heading of a figure, in English."""
     return HEADINGS.get(name) or heading_of(name)
