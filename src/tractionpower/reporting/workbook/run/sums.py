@@ -10,7 +10,7 @@ from tractionpower.reporting.texts import tr
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Column, Page
 
-LABEL_WIDTH = 34.0
+LABEL_WIDTH = 42.0
 """Room for the labels [characters]."""
 
 Told = tuple[str, Any, str]
@@ -79,7 +79,7 @@ def write_above(page: Page, row: int, told: Sequence[Told], names: Mapping[str, 
     for label, value, style in told:
         words = tr(label)
         page.put(row, 1, words, "label")
-        page.sheet.row_dimensions[row].height = LINE_POINTS * math.ceil(len(words) * 1.1 / LABEL_WIDTH)
+        page.sheet.row_dimensions[row].height = LINE_POINTS * math.ceil(len(words) / LABEL_WIDTH)
         page.put(row, 2, value, style)
         if names and label in names:
             page.book.define(names[label], page, f"B{row}")
