@@ -14,7 +14,7 @@ from tractionpower.reporting.workbook.common.acceptance import MET, OPEN, VIOLAT
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
-from tractionpower.reporting.workbook.frame.page import Block, Column, Page, heading_of
+from tractionpower.reporting.workbook.frame.page import FIRST_PRINTED, Block, Column, Page, heading_of
 from tractionpower.reporting.workbook.frame.plots import COLOURS, Line, draw, scatter
 from tractionpower.results.stray import FORMATIONS
 
@@ -242,7 +242,7 @@ def _profile(book: Book, front: Page) -> None:
     )
     columns = [Column(TRACK), Column(PLACE, "0.000"), *(Column(heading_of(name), style) for name, style in _PROFILE.items())]
     frame = frame.assign(track=frame["track"].astype(str)).sort_values(["track", "km"], kind="stable", ignore_index=True)
-    block = page.table(columns, frame[["track", "km", *_PROFILE]].itertuples(index=False), frozen=True)
+    block = page.table(columns, frame[["track", "km", *_PROFILE]].itertuples(index=False), frozen=True, printed=FIRST_PRINTED)
     lines = book.facts.lines.by_line(frame["track"].unique())
     for tracks in lines:
         front.new_page()
