@@ -43,7 +43,7 @@ Values = dict[str, dict[str, Any]]
 def recalculated(paths: Sequence[Path]) -> list[Path]:
     """Return copies of workbooks in which LibreOffice has calculated every formula; paths differ by the names of the files."""
     assert SOFFICE is not None
-    place = Path(tempfile.mkdtemp(prefix="office-"))
+    place = Path(tempfile.mkdtemp(prefix="office-", dir=paths[0].parent))
     profile = place / "profile" / "user"
     profile.mkdir(parents=True)
     (profile / "registrymodifications.xcu").write_text(SETTINGS, encoding="utf-8")
