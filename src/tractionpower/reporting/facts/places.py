@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,9 +28,13 @@ class LinePlaces:
     ----------
     scenario
         The scenario.
+    from_km, to_km
+        What is looked at [km]; places beyond it are left out.
     """
 
     scenario: Scenario
+    from_km: float = -math.inf
+    to_km: float = math.inf
 
     @cached_property
     def site(self) -> Site:
@@ -56,7 +61,16 @@ class LinePlaces:
     def ends(self, track: str) -> tuple[float, float]:
         """Return the first and the last kilometre of a track [km]."""
         axis = self.site.axes[track]
-        return axis.from_km, axis.to_km
+        return max(axis.from_km, self.from_km), min(axis.to_km, self.to_km)
+
+    @property
+    def is_part(self) -> bool:
+        """Whether a part of the kilometres is looked at."""
+        return math.isfinite(self.from_km) or math.isfinite(self.to_km)
+
+    def holds(self, km: float) -> bool:
+        """Return whether a kilometre is looked at [km]."""
+        return self.from_km <= km <= self.to_km
 
     def span(self, rows: pd.DataFrame, tracks: Iterable[str]) -> tuple[float, float]:
         """Return the first and the last kilometre of rows of a table on one of the tracks [km]."""
@@ -75,13 +89,13 @@ class LinePlaces:
             if track is not None:
                 km = self.site.axes[track].km(fed[track][1])
                 found.append((round(km, 6), station.id, isinstance(station, Substation)))
-        return sorted(found)
+        return sorted(device for device in found if self.holds(device[0]))
 
     def stations(self, tracks: Iterable[str]) -> list[tuple[float, str]]:
         """Return kilometre and name of the stations on one of the tracks."""
         own, axes = set(tracks), self.site.axes
         found = [each for each in self.scenario.line.stations if own.intersection(tracks_at(axes, each.km, each.tracks))]
-        return sorted((each.km, each.name or each.id) for each in found)
+        return sorted((each.km, each.name or each.id) for each in found if self.holds(each.km))
 
 
 def told(tracks: Sequence[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -78,8 +79,9 @@ class RunData:
 
     @cached_property
     def places(self) -> LinePlaces:
-        """What stands along each of the lines."""
-        return LinePlaces(self.scenario)
+        """What stands along each of the lines, as far as it is selected."""
+        selected = self.results.run.get("selection") or {}
+        return LinePlaces(self.scenario, selected.get("from_km", -math.inf), selected.get("to_km", math.inf))
 
     @cached_property
     def planned(self) -> dict[str, PlannedRun]:
@@ -114,6 +116,11 @@ class RunData:
         if leaves and finished < rows["time_s"].iloc[-1] + self.scenario.clock.step_s - SAME_S:
             rows = rows.iloc[:-1]
         return rows if len(rows) else None
+
+    @property
+    def interval_s(self) -> float:
+        """From one row of a train to the next [s]."""
+        return max(self.scenario.clock.step_s, self.scenario.output.every_s or 0.0)
 
     @property
     def counts_from_s(self) -> float:

@@ -62,9 +62,9 @@ class Course:
         """Return the value of the axis [km] at distances `place` from the start of the route [m]."""
         return self.begin + self.sign * np.asarray(place, float) / 1000.0
 
-    def set_limits(self, axes: Axes) -> None:
-        """Let an axis show the whole route from left to right."""
-        ends = self.at([0.0, self.length_m])
+    def set_limits(self, axes: Axes, begin_m: float = 0.0, end_m: float | None = None) -> None:
+        """Let an axis show the route, or the part from `begin_m` to `end_m` [m], from left to right."""
+        ends = self.at([begin_m, self.length_m if end_m is None else end_m])
         margin = 0.01 * (ends[1] - ends[0])
         axes.set_xlim(ends[0] - margin, ends[1] + margin)
 

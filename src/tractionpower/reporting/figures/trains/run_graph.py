@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tractionpower.alignment.routes import stop_distance
 from tractionpower.reporting.facts.places import told
-from tractionpower.reporting.facts.run_data import RunData
+from tractionpower.reporting.facts.run_data import SAME_S, RunData
 from tractionpower.reporting.figures.trains.train_graph import (
     MOST_NAMES,
     GraphPanel,
@@ -94,7 +94,7 @@ def planned_times(data: RunData, tracks: Sequence[str] | None = None) -> list[tu
         for placed in planned.calls if name in ran else ():
             track, km = planned.path.place(placed.at_m)
             times = (placed.call.arrival, placed.call.departure) if tracks is None or track in tracks else ()
-            found += [(float(when), km) for when in times if when is not None]
+            found += [(float(when), km) for when in times if when is not None and data.places.holds(km)]
     return found
 
 
@@ -104,7 +104,7 @@ def places_of(data: RunData, tracks: Sequence[str] | None = None) -> GraphPlaces
     stops = {placed.call.station for planned in runs for placed in planned.calls if placed.call.stops}
     paths = list({id(planned.path): planned.path for planned in runs}.values())
     passed = [s for s in data.scenario.line.stations if any(stop_distance(path, s, tracks=tracks) is not None for path in paths)]
-    stations = sorted((s.km, s.name or s.id, s.id in stops) for s in passed)
+    stations = sorted((s.km, s.name or s.id, s.id in stops) for s in passed if data.places.holds(s.km))
     used = {leg.axis.track for path in paths for leg in path.legs}
     return GraphPlaces(stations, data.places.devices(used if tracks is None else used.intersection(tracks)))
 
@@ -113,7 +113,7 @@ def _lines(data: RunData, name: str, rows: pd.DataFrame, numbers: Mapping[str, i
     """Return the parts of a train's run with the numbers of their lines."""
     way, planned = data.ways.get(name, {}), data.planned[name]
     time_s, place = (rows[column].to_numpy(float) for column in ("time_s", "distance_m"))
-    if way.get("status") == "left" and way["finished_s"] > time_s[-1]:
+    if way.get("status") == "left" and 0.0 < way["finished_s"] - time_s[-1] <= data.interval_s + SAME_S:
         time_s, place = np.append(time_s, way["finished_s"]), np.append(place, planned.route_m)
     whole = TrainLine(name, time_s, place, way.get("status") != "stuck")
     return split_by_line(whole, planned.path, place, numbers)

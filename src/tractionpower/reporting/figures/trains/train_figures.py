@@ -239,16 +239,25 @@ def _draw_axes(over_way: Array, over_time: Array, ride: Ride, data: RunData, cou
     over_way[3].set(ylabel=tr("current at the\npantograph [A]"), xlabel=course.label)
     for axes in (over_way[3], over_time[3]):
         axes.axhline(0.0, color=INK, linewidth=0.6)
-    course.set_limits(over_way[3])
+    begin_m, end_m = _shown(ride, data)
+    course.set_limits(over_way[3], begin_m, end_m)
     set_clock(over_time[3], float(ride.time_s[0]), float(ride.time_s[-1]), 5)
     over_time[3].set_xlabel(clock_label(over_time[3]))
     stops = [placed.at_m for placed in ride.planned.calls if placed.call.stops]
-    name_stations(over_way[:2].tolist(), course, stations_along(path, scenario.line), stops, PANEL)
-    devices = [(float(course.at(place)), name, kind) for place, name, kind in devices_along(path, data.places.site)]
+    stations = [(place, name) for place, name in stations_along(path, scenario.line) if begin_m <= place <= end_m]
+    name_stations(over_way[:2].tolist(), course, stations, stops, PANEL)
+    along = [device for device in devices_along(path, data.places.site) if begin_m <= device[0] <= end_m]
+    devices = [(float(course.at(place)), name, kind) for place, name, kind in along]
     draw_joints(over_way.tolist(), course)
     for axes in over_way[2:]:
         axes.grid(visible=False, axis="x")
         mark_devices(axes, devices, PANEL, names=axes is over_way[2])
+
+
+def _shown(ride: Ride, data: RunData) -> tuple[float, float]:
+    """Return what part of the route is shown [m]: all of it, or what a selection of places has left of the train."""
+    whole = not data.places.is_part
+    return (0.0, ride.planned.path.length_m) if whole else (float(ride.place_m[0]), float(ride.place_m[-1]))
 
 
 def _draw_legend(figure: Figure, grid: Array, ride: Ride) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import Any
 
@@ -136,7 +137,8 @@ class Facts(Subject):
     @cached_property
     def lines(self) -> LinePlaces:
         """The lines with kilometres of their own."""
-        return LinePlaces(self.scenario)
+        selected = self.run.get("selection") or {}
+        return LinePlaces(self.scenario, selected.get("from_km", -math.inf), selected.get("to_km", math.inf))
 
     @cached_property
     def runs(self) -> dict[str, TrainRun]:
