@@ -190,3 +190,17 @@ def test_a_part_of_a_run_gets_reports_of_its_own(capsys):
     assert "--track" in told
     assert main(["report", str(folder), "--from", "noon"]) == 2
     assert "a time is HH:MM" in capsys.readouterr().err
+
+
+def test_only_what_is_asked_for_is_written(folder, capsys):
+    assert main(["report", str(folder), "--only", "voltage_along_line", "--format", "svg", "--format", "pdf"]) == 0
+    assert {path.name for path in (folder / "figures").iterdir()} == {"voltage_along_line.svg", "voltage_along_line.pdf"}
+    assert not (folder / "report.xlsx").exists()
+    assert main(["report", str(folder), "--only", "workbook"]) == 0
+    assert (folder / "report.xlsx").exists()
+    assert len(list((folder / "figures").iterdir())) == 2
+    capsys.readouterr()
+    assert main(["report", str(folder), "--format", "gif"]) == 2
+    assert "png, svg, pdf" in capsys.readouterr().err
+    assert main(["report", str(folder), "--only", "voltages"]) == 2
+    assert "voltage_along_line" in capsys.readouterr().err

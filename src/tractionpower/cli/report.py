@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,6 +14,7 @@ from tractionpower.cli.look import look_of
 from tractionpower.cli.options import ReportLanguage, Template
 
 if TYPE_CHECKING:
+    from tractionpower.model.report import Report
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.results import Results
     from tractionpower.results.selection.selection import Selection
@@ -35,6 +37,15 @@ def report(  # noqa: PLR0917 - typer gives each option by name
     out: Annotated[
         Path | None, typer.Option("--out", help=f"Folder of the reports; default DIR, of a part DIR/{SELECTED}/<what>.")
     ] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--only", metavar="WHAT", help="Only the workbook, the figures, or the figure of this name; may be repeated."
+        ),
+    ] = None,
+    formats: Annotated[
+        list[str] | None, typer.Option("--format", metavar="png|svg|pdf", help="Kind of files of figures; may be repeated.")
+    ] = None,
     template: Template = None,
     language: ReportLanguage = None,
 ) -> None:
@@ -45,13 +56,15 @@ def report(  # noqa: PLR0917 - typer gives each option by name
     from tractionpower.reporting.reports import write_reports
     from tractionpower.results.results import Results
 
-    look = look_of(template, language)
+    look, choice = look_of(template, language), _choice(only, formats)
     selection = _selection(trains, tracks, (begin, end), (from_km, to_km))
     results = Results.open(folder, partial=partial)
     if results.run.get("kind") == "measured" and selection.is_everything:
-        tell_reports(write_measured_reports(results, out or folder, look.report(folder, is_new=False, keep=out is None)))
+        report = choice.of(look.report(folder, is_new=False, keep=out is None))
+        tell_reports(write_measured_reports(results, out or folder, report, only=choice.parts))
         return
     scenario = _scenario(results, folder)
+    choice.check(scenario)
     target = out or _folder(folder, selection, partial=partial)
     status = results.run.get("status")
     if not selection.is_everything:
@@ -61,10 +74,55 @@ def report(  # noqa: PLR0917 - typer gives each option by name
         tell(f"a part of the run: {', '.join(f'{name} {rows} rows' for name, rows in _counts(results).items())}")
     elif target.exists() and not target.is_dir():
         raise UsageError(f"{target} is no folder")
-    report = look.report(folder, is_new=False, keep=target == folder)
-    tell_reports(write_reports(results, scenario, target, report))
+    report = choice.of(look.report(folder, is_new=False, keep=target == folder))
+    tell_reports(write_reports(results, scenario, target, report, only=choice.parts))
     if status != "complete":
         tell(f"the run is {status}: the reports hold what is in its tables")
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What the options choose to write: parts (None: all), names of figures and kinds of files (none: as the template says)."""
+
+    parts: frozenset[str] | None = None
+    names: tuple[str, ...] = ()
+    formats: tuple[str, ...] = ()
+
+    def check(self, scenario: Scenario) -> None:
+        """Refuse names that no figure has."""
+        if not self.names:
+            return
+        from tractionpower.errors import UsageError
+        from tractionpower.reporting.figures.registry import figure_names, unknown_names
+
+        unknown = unknown_names(self.names, scenario)
+        if unknown:
+            known = ", ".join(["workbook", "figures", *sorted({*figure_names(), "trains/ID"})])
+            raise UsageError(f"--only {unknown[0]}: there is no such figure; known are {known}")
+
+    def of(self, report: Report) -> Report:
+        """Return the template with the figures that the options choose; beside those chosen, others stay as they are."""
+        from tractionpower.model.report import ReportFigures
+
+        names = self.names or report.figures.names
+        figures = ReportFigures.model_validate({"formats": self.formats or report.figures.formats, "names": names})
+        return report.model_copy(update={"figures": figures})
+
+
+def _choice(only: list[str] | None, formats: list[str] | None) -> Choice:
+    from typing import get_args
+
+    from tractionpower.errors import UsageError
+    from tractionpower.model.report import FigureFormat
+
+    known = get_args(FigureFormat)
+    unknown = [each for each in formats or () if each not in known]
+    if unknown:
+        raise UsageError(f"--format {unknown[0]}: figures are written as {', '.join(known)}")
+    wanted = {*(only or ())}
+    names = tuple(sorted(wanted - {"workbook", "figures"}))
+    parts = frozenset(wanted - {*names} | ({"figures"} if names else set()))
+    return Choice(parts or None, names, tuple(dict.fromkeys(formats or ())))
 
 
 def _selection(
