@@ -86,12 +86,12 @@ def main() -> None:
         sys.stdout.write(f"{language}: {len(new)} texts, {len(bare)} without a translation\n")
 
 
-def _is_translated(string: str | tuple[str, ...]) -> bool:
-    return bool(string) if isinstance(string, str) else all(string)
+def _is_translated(string: str | tuple[str, ...] | None) -> bool:
+    return bool(string) if isinstance(string, str | None) else all(string)
 
 
 def _of_one_kind(string: str | tuple[str, ...], text: Text) -> bool:
-    return isinstance(string, str) == isinstance(text, str)
+    return isinstance(string, str | None) == isinstance(text, str)
 
 
 def _texts_of(tree: ast.AST) -> Iterator[Text]:
