@@ -1,10 +1,14 @@
-"""Draw the figures of the README and of docs/sizing.md anew: voltages, coupling, delays, ratings, outages, variants.
+"""Draw the figures of the README and of the pages anew: voltages, energy, coupling, delays, ratings, outages, variants, and
+pages of a workbook as they are printed, where LibreOffice and Poppler are there to print them.
 
 Not part of `make docs`: these figures change with the data that ship, the reference pages with the declarations.
 """
 
 from __future__ import annotations
 
+import shutil
+import subprocess
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,7 +16,9 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import tractionpower as tp
+from tractionpower.cli import main
 from tractionpower.io.scenario_files import load_scenario
+from tractionpower.model.report import Document, Report
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.figures.base.style import save
@@ -20,9 +26,11 @@ from tractionpower.reporting.figures.delays.delay_graph import delay_graphs
 from tractionpower.reporting.figures.many.contingency_figures import envelope_voltage
 from tractionpower.reporting.figures.many.outage_map import outage_maps
 from tractionpower.reporting.figures.many.sweep_figures import sweep_figures
+from tractionpower.reporting.figures.supply.energy_flow import energy_flow
 from tractionpower.reporting.figures.supply.ratings_figures import utilisation
 from tractionpower.reporting.figures.supply.voltage_figures import voltage_along_line
 from tractionpower.reporting.figures.trains.coupling_figure import compare_coupling
+from tractionpower.reporting.workbook import write_workbook
 
 IMAGES = Path(__file__).parent / "images"
 
@@ -39,12 +47,48 @@ SHADES = 160
 """Colours of a file: lines and text need no more, and the page loads faster."""
 
 
-def draw_line() -> Figure:
-    """Draw the voltages along the Central Trunk Line over its day."""
+PAGES = {"Cover": "workbook-cover", "Acceptance": "workbook-acceptance", "Energy": "workbook-energy"}
+"""Sheets of the workbook whose first page is shown, and the names of the images."""
+
+
+def draw_line() -> Iterator[tuple[str, Figure]]:
+    """Draw voltages along the Central Trunk Line and the flow of energy over its day, and pages of its workbook."""
     scenario = tp.load("cmk")
-    figure = voltage_along_line(RunData(tp.simulate(scenario), scenario))
-    assert figure is not None  # the run has a profile
-    return figure
+    results = tp.simulate(scenario)
+    data = RunData(results, scenario)
+    for name, draw in (("cmk-voltage-along-line.png", voltage_along_line), ("cmk-energy-flow.png", energy_flow)):
+        figure = draw(data)
+        assert figure is not None  # the run has a profile and ledgers
+        yield name, figure
+    print_pages(results, scenario)
+
+
+def print_pages(results: tp.Results, scenario: tp.Scenario) -> None:
+    """Write the first pages of some sheets as images."""
+    office, poppler = shutil.which("soffice"), shutil.which("pdftoppm")
+    if office is None or poppler is None:
+        print("soffice or pdftoppm is missing: the images of workbook pages stay as they are")
+        return
+    document = Document(project="Supply of the Central Trunk Line", revision="A", made_by="A. Designer", checked_by="B. Checker")
+    for sheet, name in PAGES.items():
+        with tempfile.TemporaryDirectory() as folder:
+            report = Report(company="Example Engineering", document=document, sheets=(sheet,))
+            book = write_workbook(results, scenario, Path(folder) / "book.xlsx", report)
+            profile = (Path(folder) / "profile").as_uri()
+            convert = [
+                office,
+                "--headless",
+                f"-env:UserInstallation={profile}",
+                "--convert-to",
+                "pdf",
+                "--outdir",
+                folder,
+                str(book),
+            ]
+            subprocess.run(convert, check=True, capture_output=True)
+            page = [poppler, "-r", "90", "-png", "-f", "1", "-l", "1", "-singlefile", str(book.with_suffix(".pdf"))]
+            subprocess.run([*page, str(IMAGES / name)], check=True)
+            shrink(IMAGES / f"{name}.png")
 
 
 def draw_coupling() -> Figure:
@@ -54,9 +98,21 @@ def draw_coupling() -> Figure:
     return compare_coupling(tp.simulate(full), tp.simulate(constant), full, TRAIN)
 
 
+def draw_curves(train: str) -> None:
+    """Draw effort and current of a train over its speed, as the command does."""
+    with tempfile.TemporaryDirectory() as folder:
+        main(["curves", train, "--out", folder])
+        shutil.copy(Path(folder) / f"{train}.png", IMAGES)
+    shrink(IMAGES / f"{train}.png")
+
+
 def keep(figure: Figure, name: str) -> None:
     """Write a figure with few colours."""
-    path = save(figure, IMAGES / name)
+    shrink(save(figure, IMAGES / name))
+
+
+def shrink(path: Path) -> None:
+    """Write a picture again with few colours."""
     with Image.open(path) as image:
         small = image.convert("RGB").quantize(SHADES)
     small.save(path, optimize=True)
@@ -96,4 +152,6 @@ if __name__ == "__main__":
         keep(drawn, name)
     keep(draw_delays(), "weak-delay-graph.png")
     keep(draw_coupling(), "cmk-coupling.png")
-    keep(draw_line(), "cmk-voltage-along-line.png")
+    for name, drawn in draw_line():
+        keep(drawn, name)
+    draw_curves("eu07-7-coaches")
