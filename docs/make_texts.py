@@ -15,9 +15,9 @@ from pathlib import Path
 from babel.messages.catalog import Catalog
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
-from tractionpower.reporting.texts.sources import static_texts
 
 from tractionpower.reporting.texts.recorded import SENTENCES
+from tractionpower.reporting.texts.sources import static_texts
 
 ROOT = Path(__file__).parent.parent
 CODE = ROOT / "src" / "tractionpower" / "reporting"

@@ -10,8 +10,8 @@ import tractionpower as tp
 
 README = Path(__file__).parents[1] / "README.md"
 NAMES = [
-    "InputError", "OutputError", "Problem", "Results", "Scenario", "TractionPowerError", "UsageError",
-    "change", "check", "compare", "contingency", "feasibility", "journeys", "load", "save", "simulate", "size", "sweep",
+    "InputError", "OutputError", "Problem", "Results", "Scenario", "Selection", "TractionPowerError", "UsageError",
+    "change", "check", "compare", "contingency", "feasibility", "journeys", "load", "save", "select", "simulate", "size", "sweep",
 ]  # fmt: skip
 
 

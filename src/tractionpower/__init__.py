@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from tractionpower.io.scenario_files import save_scenario as save
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.results import Results
+    from tractionpower.results.selection.select import select
+    from tractionpower.results.selection.selection import Selection
     from tractionpower.studies.compare.study import compare
     from tractionpower.studies.contingency.study import contingency
     from tractionpower.studies.feasibility.study import feasibility
@@ -30,6 +32,7 @@ _HOMES = {
     "Problem": ("errors", "Problem"),
     "Results": ("results.results", "Results"),
     "Scenario": ("model.scenario", "Scenario"),
+    "Selection": ("results.selection.selection", "Selection"),
     "TractionPowerError": ("errors", "TractionPowerError"),
     "UsageError": ("errors", "UsageError"),
     "change": ("io.library", "change"),
@@ -40,6 +43,7 @@ _HOMES = {
     "journeys": ("studies.journeys", "journeys"),
     "load": ("io.scenario_files", "load"),
     "save": ("io.scenario_files", "save_scenario"),
+    "select": ("results.selection.select", "select"),
     "simulate": ("cosimulation.simulate", "simulate"),
     "size": ("studies.ratings.study", "size"),
     "sweep": ("studies.sweep.study", "sweep"),
@@ -51,6 +55,7 @@ __all__ = [
     "Problem",
     "Results",
     "Scenario",
+    "Selection",
     "TractionPowerError",
     "UsageError",
     "change",
@@ -61,6 +66,7 @@ __all__ = [
     "journeys",
     "load",
     "save",
+    "select",
     "simulate",
     "size",
     "sweep",
