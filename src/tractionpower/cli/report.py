@@ -71,7 +71,9 @@ def report(  # noqa: PLR0917 - typer gives each option by name
         from tractionpower.results.selection.select import select
 
         results, scenario = select(results, scenario, selection)
-        tell(f"a part of the run: {', '.join(f'{name} {rows} rows' for name, rows in _counts(results).items())}")
+        tell(f"a part of the run: {', '.join(f'{name} {results.row_count(name)} rows' for name in results.tables)}")
+        for train in results.run["selection"].get("without_rows", ()):
+            tell(f"train {train} has no row in this part")
     elif target.exists() and not target.is_dir():
         raise UsageError(f"{target} is no folder")
     report = choice.of(look.report(folder, is_new=False, keep=target == folder))
@@ -173,7 +175,3 @@ def _folder(folder: Path, selection: Selection, *, partial: bool) -> Path:
     words += [f"{key} {told[f'{key}_km']:g} km" for key in ("from", "to") if f"{key}_km" in told]
     name = " ".join(words)
     return base / SELECTED / file_names([name])[name].removesuffix(ENDING)
-
-
-def _counts(results: Results) -> dict[str, int]:
-    return {name: results.row_count(name) for name in results.tables}

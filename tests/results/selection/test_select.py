@@ -85,6 +85,12 @@ def test_sums_over_the_whole_run_do_not_belong_to_a_part(part):
     assert [train["train"] for train in part[0].run["trains"]] == ["2"]
 
 
+def test_trains_that_are_not_there_are_told(run):
+    told = select(run, run.scenario, Selection(trains=("1", "2"), to_km=9.0))[0].run
+    assert [train["train"] for train in told["trains"]] == ["2"]
+    assert "no row of these trains is in the part: 1" in told["notes"]
+
+
 def test_all_that_is_wrong_is_told_at_once(run):
     wrong = Selection(trains=("none",), tracks=("9",), from_s=9e5, from_km=5.0, to_km=4.0)
     with pytest.raises(InputError) as caught:

@@ -121,9 +121,11 @@ def _run(results: Results, scenario: Scenario, selection: Selection, frames: dic
     there = {str(train) for train in frames["trains"]["train"].unique()} if "trains" in frames else set()
     gone = ("verdicts", "ledgers", "overlaps", "links", "return_circuit", "lumping", "files", "feasibility", "kind")
     run = {key: value for key, value in results.run.items() if key not in gone}
+    gone_trains = [train for train in selection.trains if train not in there]
+    missing = [f"no row of these trains is in the part: {', '.join(gone_trains)}"] if gone_trains else []
     return run | {
-        "notes": [PART, *run.get("notes", ())],
-        "selection": selection.as_dict(),
+        "notes": [PART, *missing, *run.get("notes", ())],
+        "selection": selection.as_dict() | ({"without_rows": gone_trains} if gone_trains else {}),
         "start_s": clock.start,
         "end_s": clock.end,
         "steps": round((clock.end - clock.start) / clock.step_s),

@@ -74,14 +74,16 @@ def check_selection(selection: Selection, scenario: Scenario) -> list[Problem]:
         *_unknown("--track", selection.tracks, [track.id for track in scenario.line.tracks]),
     ]
     if max(selection.from_s, clock.start) >= min(selection.to_s, clock.end):
-        found = f"{_time(selection.from_s, clock.start)} to {_time(selection.to_s, clock.end)}"
+        begin, end = (format_time(at) if math.isfinite(at) else "..." for at in (selection.from_s, selection.to_s))
+        found = f"{begin} to {end}"
         allowed = f"a part of {format_time(clock.start)} to {format_time(clock.end)}, the time of the run"
         problems.append(Problem("selection", "--from, --to", found, allowed, "choose times within it"))
     lowest, highest = (
         pick(getattr(track, name) for track in scenario.line.tracks) for pick, name in ((min, "from_km"), (max, "to_km"))
     )
     if selection.from_km > selection.to_km or selection.from_km > highest or selection.to_km < lowest:
-        found = f"{max(selection.from_km, lowest):g} to {min(selection.to_km, highest):g} km"
+        begin, end = (f"{km:g}" if math.isfinite(km) else "..." for km in (selection.from_km, selection.to_km))
+        found = f"{begin} to {end} km"
         allowed = f"a rising range that meets km {lowest:g} to {highest:g}"
         problems.append(Problem("selection", "--from-km, --to-km", found, allowed, "choose kilometres of the line"))
     return problems
@@ -160,7 +162,3 @@ def _unknown(option: str, wanted: Collection[str], known: Collection[str]) -> li
         Problem("selection", option, repr(each), f"one of {shown or 'none: the study has none'}", "see sheet Trains")
         for each in missing
     ]
-
-
-def _time(seconds: float, default: float) -> str:
-    return format_time(seconds if math.isfinite(seconds) else default)
