@@ -208,6 +208,7 @@ NOTES = (
     "the electric ledger does not close",
     "same inputs as case {case}",
     "{reason}; same inputs as case {case}",
+    "no row of these trains is in the part: {trains}",
 )
 """Notes of a run, of ratings and of cases."""
 
