@@ -8,11 +8,15 @@ import pytest
 import tractionpower as tp
 from tractionpower.errors import InputError, UsageError
 from tractionpower.results.results import Results
+from tractionpower.results.selection.figures import trains_of
 from tractionpower.results.selection.select import select
 from tractionpower.results.selection.selection import Selection
 
 SAME = 2e-6
 """Rows hold float32; key figures of a run are of float64."""
+
+OF_TRAINS_AND_LOADS = ("lowest_voltage_v", "highest_voltage_v")
+"""Figures that a run also takes from cross-sections, which have no rows."""
 
 IN_PARTS_OF_STEPS = ("running_time_s", "mean_speed_kmh")
 """Figures that a run takes from arrivals within steps, which rows do not tell."""
@@ -40,7 +44,7 @@ def test_everything_has_the_key_figures_of_the_run(run):
     assert {name for name, _ in common} > {"energy_taken_kwh", "highest_rms_current_1_min_a", "mean_useful_voltage_time_mean_v"}
     for key in common:
         assert found[key]["value"] == pytest.approx(known[key]["value"], rel=SAME, abs=1e-4), key
-        assert found[key]["definition"] == known[key]["definition"], key
+        assert found[key]["definition"] == known[key]["definition"] or key[0] in OF_TRAINS_AND_LOADS, key
 
 
 def test_rows_are_those_of_the_part(run, part):
@@ -89,6 +93,33 @@ def test_trains_that_are_not_there_are_told(run):
     told = select(run, run.scenario, Selection(trains=("1", "2"), to_km=9.0))[0].run
     assert [train["train"] for train in told["trains"]] == ["2"]
     assert "no row of these trains is in the part: 1" in told["notes"]
+
+
+def test_a_train_that_leaves_the_part_and_comes_back_runs_only_what_is_in_it(run):
+    rows = run.table("trains")
+    rows = rows[(rows["train"].astype(str) == "2") & ~rows["position_km"].between(4.0, 6.0)]
+    figures_of = {figure.name: figure.value for figure in trains_of(rows, None, {}, run.scenario.clock.step_s)}
+    speeds = rows["speed_kmh"].to_numpy(float)
+    assert figures_of["length_km"] == pytest.approx(speeds.sum() * run.scenario.clock.step_s / 3600.0, rel=2e-3)
+    assert figures_of["mean_speed_kmh"] <= figures_of["highest_speed_kmh"]
+
+
+def test_a_train_that_goes_on_beyond_the_part_is_said_to(run, part):
+    told = {train["train"]: train for train in part[0].run["trains"]}["2"]
+    rows = part[0].table("trains")
+    assert told["status"] == "beyond"
+    assert told["finished_s"] is None
+    assert told["entered_s"] == rows["time_s"].min()
+
+
+def test_what_the_figures_of_a_part_rest_on_is_told():
+    changes = ["output.every_s=5", "clock.warm_up=00:06:00"]
+    thin = tp.simulate(tp.change(tp.load("two-substations"), changes))
+    results, scenario = select(thin, thin.scenario, Selection(to_s=300.0))
+    assert any("rows every 5 s" in note for note in results.run["notes"])
+    assert any("in the warm-up" in note for note in results.run["notes"])
+    assert results.key_figures == []
+    assert scenario.clock.end == 300.0
 
 
 def test_all_that_is_wrong_is_told_at_once(run):

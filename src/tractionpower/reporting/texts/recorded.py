@@ -209,6 +209,10 @@ NOTES = (
     "same inputs as case {case}",
     "{reason}; same inputs as case {case}",
     "no row of these trains is in the part: {trains}",
+    "figures of the part rest on rows every {seconds} s, which stand for the steps between them",
+    "the part lies in the warm-up, which does not count: it has no key figures",
+    "lowest mean of a step between contact line and rail, at trains and loads of the part",
+    "highest mean of a step between contact line and rail, at trains and loads of the part",
 )
 """Notes of a run, of ratings and of cases."""
 

@@ -18,7 +18,6 @@ from tractionpower.results.key_figures import (
     load_figures,
     plant_figures,
     substation_figures,
-    voltage_figure,
     window_figures,
 )
 from tractionpower.results.trains import KMH_PER_MPS, SupplySummary, TrainSummary, supply_figures, train_figures
@@ -94,13 +93,20 @@ def trains_of(
         yield from supply_figures(_supply(name, own, step_s, late.get(name, np.nan), useful, k))
 
 
-def voltages_of(rows: pd.DataFrame) -> Iterator[KeyFigure]:
-    """Yield the lowest and the highest voltage at the pantographs of trains."""
-    known = rows[rows["voltage_v"].notna()]
-    for which, pick in (("lowest", "idxmin"), ("highest", "idxmax")) if len(known) else ():
-        row = known.loc[getattr(known["voltage_v"], pick)()]
-        place = f"train {row['train']}, track {row['track']}, km {row['position_km']:.2f}"
-        yield voltage_figure(which, row["voltage_v"], place, row["time_s"])
+def voltages_of(trains: pd.DataFrame | None, loads: pd.DataFrame | None) -> Iterator[KeyFigure]:
+    """Yield the lowest and the highest voltage at the pantographs of trains and at fixed loads."""
+    for which, pick in (("lowest", "idxmin"), ("highest", "idxmax")):
+        found = []
+        for rows, subject in ((trains, "train"), (loads, "load")):
+            known = None if rows is None else rows[rows["voltage_v"].notna()]
+            if known is not None and len(known):
+                row = known.loc[getattr(known["voltage_v"], pick)()]
+                where = f", track {row['track']}, km {row['position_km']:.2f}" if subject == "train" else ""
+                found.append((float(row["voltage_v"]), f"{subject} {row[subject]}{where}", float(row["time_s"])))
+        if found:
+            volts, place, when_s = (min if which == "lowest" else max)(found)
+            definition = f"{which} mean of a step between contact line and rail, at trains and loads of the part"
+            yield KeyFigure(f"{which}_voltage_v", volts, place, format_time(when_s), definition)
 
 
 def by_device(rows: pd.DataFrame, keys: Sequence[str], value: str) -> tuple[Array, Sequence[str], Array]:
@@ -124,9 +130,12 @@ def _summary(name: str, rows: pd.DataFrame, way: Mapping[str, Any], step_s: floa
     last_s = _part(last["time_s"], way.get("finished_s"), step_s)
     journey_s = (len(rows) - 1) * step_s + last_s - (step_s - _part(-time_s[0] - step_s, _minus(way.get("entered_s")), step_s))
     standing_s = float(rows["phase"].astype(str).isin(STANDS).sum()) * step_s
-    last_m = last["distance_m"] + (speed[-1] / KMH_PER_MPS + 0.5 * last["acceleration_mps2"] * last_s) * last_s
+    lengths_s = np.append(np.full(len(rows) - 1, step_s), last_s)
+    ways_m = (speed / KMH_PER_MPS + 0.5 * rows["acceleration_mps2"].to_numpy(float) * lengths_s) * lengths_s
+    follows = np.diff(time_s) < 1.5 * step_s  # else it was beyond the part meanwhile
+    ways_m[:-1] = np.where(follows, np.diff(rows["distance_m"].to_numpy(float)), ways_m[:-1])
     return TrainSummary(
-        name, float(last_m - rows["distance_m"].iloc[0]), journey_s, journey_s - standing_s,
+        name, float(ways_m.sum()), journey_s, journey_s - standing_s,
         float(speed[fastest]) / KMH_PER_MPS, float(time_s[fastest]),
         (power_kw + returned_kw) * 1000.0 * step_s, returned_kw * 1000.0 * step_s,
         float(current[most]), float(time_s[most]),

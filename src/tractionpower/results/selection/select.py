@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import pandas as pd
 import pyarrow as pa
 
 from tractionpower.errors import UsageError, raise_errors
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.results.columns import TABLES
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.results import Results
@@ -21,8 +21,13 @@ from tractionpower.results.tables import make_table
 BIN_KM = 0.5
 """Length of the bins of the profile [km], as in a run."""
 
-PART = "a part of the run: its key figures are of the selected rows; verdicts, ledgers and ratings are those of the whole run"
+PART = (
+    "a part of the run: key figures are of the selected rows; verdicts, ledgers and ratings are in the reports of the whole run"
+)
 """What a reader of such results has to know."""
+
+BEYOND = "beyond"
+"""Status of a train that goes on where the part ends."""
 
 OVER_TIME = ("trains", "calls", "substations", "feeders", "cabins", "switches", "loads", "rails", "earthing", "events")
 """Tables whose rows have a time or a train each, so that a part of them is that of a part of the run."""
@@ -103,8 +108,7 @@ def _figures(
     for name in ("trains", "substations", "feeders", "loads"):
         if name in counted:
             counted[name] = counted[name][counted[name]["time_s"] >= scenario.clock.counts_from_s]
-    if len(counted.get("trains", ())):
-        yield from voltages_of(counted["trains"])
+    yield from voltages_of(counted.get("trains"), counted.get("loads"))
     if len(counted.get("substations", ())):
         yield from substations_of(counted["substations"], step_s)
     if len(counted.get("feeders", ())):
@@ -118,19 +122,47 @@ def _figures(
 def _run(results: Results, scenario: Scenario, selection: Selection, frames: dict[str, pd.DataFrame]) -> dict[str, Any]:
     """Return ``run.json`` of the part: what it says of the solution holds for the run, verdicts and ledgers go."""
     clock = _clock_of(scenario, selection).clock
-    there = {str(train) for train in frames["trains"]["train"].unique()} if "trains" in frames else set()
+    ways = {str(name): rows for name, rows in frames["trains"].groupby("train", observed=True)} if "trains" in frames else {}
     gone = ("verdicts", "ledgers", "overlaps", "links", "return_circuit", "lumping", "files", "feasibility", "kind")
     run = {key: value for key, value in results.run.items() if key not in gone}
-    gone_trains = [train for train in selection.trains if train not in there]
-    missing = [f"no row of these trains is in the part: {', '.join(gone_trains)}"] if gone_trains else []
+    gone_trains = [train for train in selection.trains if train not in ways]
+    told = [*results.run.get("trains", ())]
     return run | {
-        "notes": [PART, *missing, *run.get("notes", ())],
+        "notes": [PART, *_notes(scenario, selection, gone_trains), *run.get("notes", ())],
         "selection": selection.as_dict() | ({"without_rows": gone_trains} if gone_trains else {}),
         "start_s": clock.start,
         "end_s": clock.end,
         "steps": round((clock.end - clock.start) / clock.step_s),
-        "trains": [train for train in results.run.get("trains", ()) if train["train"] in there],
+        "trains": [_train(way, ways[way["train"]], scenario) for way in told if way["train"] in ways],
     }
+
+
+def _notes(scenario: Scenario, selection: Selection, gone_trains: Sequence[str]) -> Iterator[str]:
+    """Yield what a reader of the part has to know."""
+    clock, every_s = scenario.clock, scenario.output.every_s or 0.0
+    if gone_trains:
+        yield f"no row of these trains is in the part: {', '.join(gone_trains)}"
+    if every_s > clock.step_s:
+        yield f"figures of the part rest on rows every {every_s:g} s, which stand for the steps between them"
+    if selection.to_s <= clock.counts_from_s:
+        yield "the part lies in the warm-up, which does not count: it has no key figures"
+
+
+def _train(way: dict[str, Any], rows: pd.DataFrame, scenario: Scenario) -> dict[str, Any]:
+    """Return what became of a train in the part: when it came and went, and where its voltage was lowest."""
+    first_s, last_s = float(rows["time_s"].min()), float(rows["time_s"].max())
+    interval_s = max(scenario.clock.step_s, scenario.output.every_s or 0.0)
+    told, entered, finished = dict(way), way.get("entered_s"), way.get("finished_s")
+    if entered is not None and first_s > entered + interval_s:
+        told["entered_s"] = first_s
+    if finished is not None and finished > last_s + interval_s + ROUNDING_S:
+        told |= {"finished_s": None, "status": BEYOND}
+    counted = rows[(rows["time_s"] >= scenario.clock.counts_from_s) & rows["voltage_v"].notna()]
+    if len(counted):
+        row = counted.iloc[int(counted["voltage_v"].to_numpy(float).argmin())]
+        places = (("track", str(row["track"])), ("km", float(row["position_km"])), ("s", float(row["time_s"])))
+        told |= {f"lowest_voltage_{name}": value for name, value in places if f"lowest_voltage_{name}" in told}
+    return told
 
 
 def _clock_of(scenario: Scenario, selection: Selection) -> Scenario:

@@ -99,7 +99,7 @@ def selected_rows(table: str, rows: pa.Table, selection: Selection, scenario: Sc
         own = {run.id for run in scenario.runs} - {*selection.trains}
         keep &= ~_is_in(rows, "subject", own)
     if "track" in names and selection.tracks:
-        keep &= _is_on(rows, selection.tracks)
+        keep &= _is_on(rows, selection.tracks, {track.id for track in scenario.line.tracks})
     if table in STATIONS and selection.has_places:
         keep &= _is_in(rows, STATIONS[table], _devices(selection, scenario))
     keep &= _in_window(table, rows, selection)
@@ -120,7 +120,9 @@ def _in_window(table: str, rows: pa.Table, selection: Selection) -> Any:
         time_s = _numbers(rows, "time_s")
     else:
         return np.ones(rows.num_rows, bool)
-    return ~((time_s < selection.from_s - ROUNDING_S) | (time_s >= selection.to_s - ROUNDING_S))
+    if not selection.has_window:
+        return np.ones(rows.num_rows, bool)
+    return (time_s >= selection.from_s - ROUNDING_S) & (time_s < selection.to_s - ROUNDING_S)
 
 
 def _numbers(rows: pa.Table, name: str) -> Any:
@@ -132,10 +134,11 @@ def _is_in(rows: pa.Table, name: str, values: Collection[str]) -> Any:
     return pc.is_in(texts, pa.array(sorted(values), pa.string())).to_numpy(zero_copy_only=False)
 
 
-def _is_on(rows: pa.Table, tracks: Collection[str]) -> Any:
-    """Return which rows are on one of the tracks; those of a return conductor name several by blanks, those of no track none."""
+def _is_on(rows: pa.Table, tracks: Collection[str], every: Collection[str]) -> Any:
+    """Return which rows are on one of the tracks; a return conductor names several by blanks, what belongs to none no track."""
     told = rows.column("track").cast(pa.string()).to_pylist()
-    known = {text: not text or text in tracks or not {*str(text).split()}.isdisjoint(tracks) for text in set(told)}
+    names = {text: [text] if text in every else str(text or "").split() for text in set(told)}
+    known = {text: not own or not {*own}.isdisjoint(tracks) for text, own in names.items()}
     return np.array([known[text] for text in told], bool)
 
 

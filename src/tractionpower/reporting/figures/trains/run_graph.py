@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -115,5 +116,9 @@ def _lines(data: RunData, name: str, rows: pd.DataFrame, numbers: Mapping[str, i
     time_s, place = (rows[column].to_numpy(float) for column in ("time_s", "distance_m"))
     if way.get("status") == "left" and 0.0 < way["finished_s"] - time_s[-1] <= data.interval_s + SAME_S:
         time_s, place = np.append(time_s, way["finished_s"]), np.append(place, planned.route_m)
-    whole = TrainLine(name, time_s, place, way.get("status") != "stuck")
-    return split_by_line(whole, planned.path, place, numbers)
+    cuts = [0, *(np.flatnonzero(np.diff(time_s) > data.interval_s + SAME_S) + 1).tolist(), len(time_s)]
+    parts = []
+    for first, last in pairwise(cuts):  # more than one where it left what is selected, and came back
+        piece = TrainLine(name, time_s[first:last], place[first:last], way.get("status") != "stuck")
+        parts += split_by_line(piece, planned.path, place[first:last], numbers)
+    return parts

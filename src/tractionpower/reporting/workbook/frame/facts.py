@@ -32,6 +32,7 @@ STATES = {
     "on_line": mark("still on the line at the end"),
     "outside": mark("did not enter"),
     "stuck": mark("stuck on the line"),
+    "beyond": mark("goes on beyond the part"),
 }
 """What became of a train, by the status in ``run.json``."""
 
