@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 import io
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
@@ -23,7 +23,7 @@ ROOT = Path(__file__).parent.parent
 CODE = ROOT / "src" / "tractionpower" / "reporting"
 TEXTS = CODE / "texts"
 LANGUAGES = ("pl",)
-FUNCTIONS = {"tr": (0,), "mark": (0,), "recorded": (0,), "Column": (0,)}
+FUNCTIONS = {"tr": (0,), "mark": (0,), "recorded": (0,), "Column": (0,), "_begin": (2,)}
 METHODS = {"page": (0, 1), "section": (0,), "note": (0,), "line": (0,), "wrapped": (0,)}
 """Functions and methods that translate what they are given, and which of their arguments."""
 
@@ -94,28 +94,43 @@ def _of_one_kind(string: str | tuple[str, ...], text: Text) -> bool:
     return isinstance(string, str | None) == isinstance(text, str)
 
 
-def _texts_of(tree: ast.AST) -> Iterator[Text]:
+def _texts_of(tree: ast.Module) -> Iterator[Text]:
+    named = dict(_named(tree))
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call):
             continue
         name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
         if name == "trn":
-            one, many = (_constants(argument) for argument in node.args[:2])
+            one, many = (_constants(argument, named) for argument in node.args[:2])
             yield from zip(one, many, strict=True)
             continue
         places = METHODS.get(name, ()) if isinstance(node.func, ast.Attribute) else FUNCTIONS.get(name, ())
         for place in places:
             if place < len(node.args):
-                yield from _constants(node.args[place])
+                yield from _constants(node.args[place], named)
 
 
-def _constants(argument: ast.expr) -> Iterator[str]:
-    """Yield the texts that an argument can be: a literal, or one of the two of a condition."""
+def _constants(argument: ast.expr, named: Mapping[str, str]) -> Iterator[str]:
+    """Yield the texts that an argument can be: a literal, a constant of the module, or one of the two of a condition."""
     if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
         yield argument.value
+    elif isinstance(argument, ast.Name) and argument.id in named:
+        yield named[argument.id]
     elif isinstance(argument, ast.IfExp):
-        yield from _constants(argument.body)
-        yield from _constants(argument.orelse)
+        yield from _constants(argument.body, named)
+        yield from _constants(argument.orelse, named)
+
+
+def _named(tree: ast.Module) -> Iterator[tuple[str, str]]:
+    """Yield the constants of a module that are texts: each with a name of its own, or several by commas."""
+    for node in tree.body:
+        if not isinstance(node, ast.Assign):
+            continue
+        target = node.targets[0]
+        several = isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple)
+        for name, value in zip(target.elts, node.value.elts, strict=True) if several else ((target, node.value),):
+            if isinstance(name, ast.Name) and isinstance(value, ast.Constant) and isinstance(value.value, str):
+                yield name.id, value.value
 
 
 if __name__ == "__main__":

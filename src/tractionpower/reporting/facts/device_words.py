@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.texts import mark, tr
+from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.studies.ratings.words import window_words
 
 KINDS = {
@@ -22,6 +23,18 @@ KINDS = {
 """Kinds of devices in words, in the order of sheets and figures."""
 
 
+_NAMED = {
+    "unit": mark("{device} unit"),
+    "return": mark("{device} return"),
+    "low_km": mark("{device} low_km"),
+    "high_km": mark("{device} high_km"),
+    "bypassed": mark("{device} bypassed"),
+    "blocked": mark("{device} blocked"),
+}
+"""How the program names devices of a station, and outages of it."""
+_NAME = re.compile(rf"([^,;:()]*[^,;:() ]) ({'|'.join(_NAMED)})(?=$|[,;:)])")
+
+
 def counted_devices(number: int, kind: str) -> str:
     """Return how many devices of a kind there are, in words.
 
@@ -33,6 +46,15 @@ def counted_devices(number: int, kind: str) -> str:
         head, blank, tail = words.partition(" of ")
         words = f"{head.removesuffix('es' if head.endswith('ches') else 's')}{blank}{tail}"
     return f"{number} {words}"
+
+
+def device_told(name: object) -> str:
+    """Return the name that the program gives a device, or a place that names one, in the language of the report.
+
+    >>> device_told("Psary 1 low_km"), device_told("track 1 km 0-9.5, whole run")
+    ('Psary 1 low_km', 'track 1 km 0-9.5, whole run')
+    """
+    return _NAME.sub(lambda found: tr(_NAMED[found[2]], device=found[1]), recorded(str(name)))
 
 
 def kind_told(kind: str) -> str:

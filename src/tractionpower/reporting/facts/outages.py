@@ -14,8 +14,9 @@ import pandas as pd
 from tractionpower.io.wording import counted
 from tractionpower.model.limits import Limit, find_limit
 from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.facts.places import LinePlaces
-from tractionpower.reporting.texts import mark, recorded, tr
+from tractionpower.reporting.texts import mark, number, recorded, tr
 from tractionpower.results.results import Results
 from tractionpower.studies.cases.judgement import Check, checks_of
 
@@ -215,7 +216,8 @@ class Outages:
         """Return what a case fails at; none for one that holds. One that was not computed fails at that."""
         if case["status"] not in COMPUTED:
             reason = " ".join(str(case["reason"]).split())
-            words = f"{case['status']}: {reason}" if reason else str(case["status"])
+            status = recorded(str(case["status"]))
+            words = f"{status}: {reason}" if reason else status
             return [Failure(NOT_COMPUTED, words, words)]
         return [Failure(check.name, check.word, _missed(check, case)) for check in self.checks if not check.is_met(case)]
 
@@ -255,11 +257,15 @@ def _missed(check: Check, case: Mapping[str, Any]) -> str:
     """Return in words how a limit is missed."""
     value, unit = case[check.figure], f" {check.unit}" if check.unit else ""
     of = _OF.get(check.figure, "").format(**case)
-    side = "below" if check.is_floor else "above"
-    shown = f"{value:.0f}" if abs(value - check.value) >= 1.0 else f"{value:.1f}"
+    shown = number(value, 0 if abs(value - check.value) >= 1.0 else 1, bare=False)
     if not unit:
-        return f"{shown}, permitted {check.value:g}"
-    return f"{shown}{unit}{f' ({of})' if of else ''}, {side} {check.value:g}{unit}"
+        return tr("{value}, permitted {limit}", value=shown, limit=_limit(check))
+    told = {"value": f"{shown}{unit}{f' ({device_told(of)})' if of else ''}", "limit": f"{_limit(check)}{unit}"}
+    return tr("{value}, below {limit}", **told) if check.is_floor else tr("{value}, above {limit}", **told)
+
+
+def _limit(check: Check) -> str:
+    return number(check.value, 6)
 
 
 def _out(kind: str, subject: str, mode: str) -> str:
@@ -269,10 +275,8 @@ def _out(kind: str, subject: str, mode: str) -> str:
     ('Psary, 1 of 2 units', 'contact line track 1 km 0-9')
     """
     if subject.endswith(" unit"):
-        counted_units = _UNITS.search(mode)
-        left = tr("only unit out") if counted_units is None else tr("{units} units", units=recorded(counted_units[1]))
-        more = "" if counted_units is None else recorded(mode[counted_units.end() :])  # such as when a reserve feeds
-        return f"{subject.removesuffix(' unit')}, {left}{more}"
+        left = recorded(_UNITS.sub(r"\1 units", mode, count=1)) if _UNITS.search(mode) else tr("only unit out")
+        return f"{subject.removesuffix(' unit')}, {left}"
     words = KIND_WORDS.get(kind, kind) if kind not in ("", "variant") else ""
     told = not words or subject.casefold().startswith(tuple(words.split()))
     named = recorded(subject) if told else f"{tr(words)} {recorded(subject)}"

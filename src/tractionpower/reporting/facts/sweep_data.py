@@ -9,7 +9,7 @@ import pandas as pd
 
 from tractionpower.model.quantity import Quantity
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.texts import mark
+from tractionpower.reporting.texts import mark, recorded
 from tractionpower.results.results import Results
 from tractionpower.studies.sweep.cases import number_of, short_names
 
@@ -110,4 +110,6 @@ def _heading(name: str) -> str:
     ('A internal resistance [Ω]', 'C state')
     """
     item, _, last = name.rpartition(" ")
-    return name if "." in name else f"{item} {Quantity(last, '').heading}".strip()
+    quantity = Quantity(last, "")
+    unit = f" [{quantity.unit}]" if quantity.unit else ""
+    return name if "." in name else f"{item} {recorded(quantity.words)}{unit}".strip()

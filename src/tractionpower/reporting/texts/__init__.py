@@ -16,11 +16,19 @@ from functools import cache, lru_cache
 from pathlib import Path
 
 from tractionpower.model.report import Language
-from tractionpower.reporting.texts.recorded import SENTENCES
+from tractionpower.reporting.texts.recorded import SENTENCES, TOGETHER
 
 _FOLDER = Path(__file__).parent
 _language: ContextVar[Language] = ContextVar("language of reports", default="en")
 _PLACE = re.compile(r"\{(\w+)\}")
+_NUMBERS = frozenset({
+    "air", "all", "allowed", "before", "begin", "count", "current", "end", "in_service", "km", "leakage", "number",
+    "percent", "seconds", "share", "sun", "units", "value", "volts", "wind",
+})  # fmt: skip
+"""Places of recorded sentences that hold a number, a time or a length of time: other text there is of another sentence."""
+_NUMBER = r"-?\d[\d.,:e+-]*(?: h| min| s)?"
+_OTHER = r"[^()]+?"  # the second of a pair, of which a list may hold several
+_DECIMAL = re.compile(r"(?<![\d.:])(-?\d+)\.(\d+)(?![\d.:])")
 
 
 @contextmanager
@@ -104,7 +112,8 @@ def _patterns() -> list[tuple[str, re.Pattern[str]]]:
     found = []
     for sentence in sorted((each for each in SENTENCES if "{" in each), key=lambda each: -len(_PLACE.sub("", each))):
         parts = _PLACE.split(sentence)
-        pattern = "".join(re.escape(part) if k % 2 == 0 else f"(?P<{part}>.+?)" for k, part in enumerate(parts))
+        held = [_NUMBER if part in _NUMBERS else _OTHER if part == "other" else ".+?" for part in parts]
+        pattern = "".join(re.escape(part) if k % 2 == 0 else f"(?P<{part}>{held[k]})" for k, part in enumerate(parts))
         found.append((sentence, re.compile(pattern, re.DOTALL)))
     return found
 
@@ -117,8 +126,16 @@ def _recorded(text: str, chosen: Language) -> str:
         return told
     for sentence, pattern in _patterns():
         match = pattern.fullmatch(text)
-        if match is not None:
-            return catalogue.gettext(sentence).format(
-                **{name: _recorded(part, chosen) for name, part in match.groupdict().items()}
-            )
+        if match is None:
+            continue
+        found = match.groupdict()
+        numbers = {*_NUMBERS, "limit"}  # a limit may be a name as well
+        parts = {name: _number(part, chosen) if name in numbers else _recorded(part, chosen) for name, part in found.items()}
+        if sentence not in TOGETHER or parts != found:  # parts of which none is known are words of the user
+            return catalogue.gettext(sentence).format(**parts)
     return text
+
+
+def _number(text: str, chosen: Language) -> str:
+    """Return a recorded number with the decimal sign of a language; times and lengths of time hold as they are."""
+    return _DECIMAL.sub(r"\1,\2", text) if chosen == "pl" else text

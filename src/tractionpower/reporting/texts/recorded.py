@@ -23,6 +23,12 @@ FIGURES = (
 )  # fmt: skip
 """Names of key figures in words."""
 
+HEADINGS = ("area [mm²]", "level [%]", "resistance [Ω]", "resistance [Ω/km]", "every [km]", "highest [°C]", "temperature [°C]")
+"""Headings whose words mean something else with another unit."""
+
+SHEETS = ("Differences {count}",)
+"""Sheets of which there may be several."""
+
 DEFINITIONS = (
     "at the start of a step",
     "auxiliaries and heating",
@@ -139,6 +145,9 @@ PLACES = (
     "train {train}, from track {track}, km {km}",
     "train {train}, {section}",
     "track {track}, km {km}",
+    "track {track}, km {begin} to {end}",
+    "track {track} km {begin}-{end}",
+    "rails {tracks} km {begin}-{end}",
     "tracks {tracks}, km {km}",
     "load {load}",
     "load {load}, track {track}, km {km}",
@@ -200,7 +209,7 @@ NOTES = (
     "trains {trains}",
     "trains do not see each other; these overlap: {pairs}",
     "trains do not see each other; these overlap: {pairs} and {count} more pairs",
-    "{first} and {second} ({time}, track {track}, km {km}, {count} steps)",
+    "{first} and {other} ({time}, track {track}, km {km}, {count} steps)",
     "windows longer than what counts of the run, {seconds} s, are held against the whole of it: {windows}",
     "without a rating, not judged: {devices}",
     "held against recalled values, which the user may replace: {kinds}",
@@ -216,10 +225,10 @@ NOTES = (
 )
 """Notes of a run, of ratings and of cases."""
 
-TOGETHER = ("{first}; {second}", "{first}, {second}", "{first} and {second}", "{first}: {second}", "{first} + {second}")
-"""How parts stand together that are looked up one by one."""
+TOGETHER = ("{first} and {second}", "{first} + {second}", "{first}; {second}", "{first}: {second}", "{first}, {second}")
+"""How parts stand together that are looked up one by one; those of equal length in the order in which a text is parted."""
 
 SENTENCES: tuple[str, ...] = (
-    *FIGURES, *DEFINITIONS, *VERDICTS, *FAILURES, *PLACES, *EVENTS, *NOTES, *OF_STUDIES, *TOGETHER,
+    *FIGURES, *HEADINGS, *SHEETS, *DEFINITIONS, *VERDICTS, *FAILURES, *PLACES, *EVENTS, *NOTES, *OF_STUDIES, *TOGETHER,
 )  # fmt: skip
 """All of them, those of studies included."""

@@ -148,6 +148,9 @@ OUTAGES = (
     "{name}: it is {state} already",
     "{count} of {all} in service",
     "{count} of {all} in service, reserve after {seconds} s",
+    "{count} of {all} units",
+    "{count} of {all} units in service",
+    "{count} of {all} units in service, reserve after {seconds} s",
     "{name}: out from {time}, when its units carry most over {lasts} with nothing out, by the root mean square; its reserve feeds"
     " {again} later",
     "{name}: out from {time}, as contingency.begins says; its reserve feeds {again} later",

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from tractionpower.model.limits import common_limits
-from tractionpower.reporting.facts.device_words import window_told
+from tractionpower.reporting.facts.device_words import device_told, window_told
 from tractionpower.reporting.facts.outages import COMPUTED, Outages, grid_told
 from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.figures.base.axes import draw_limits, panels_of_lines, voltage_range, with_margin
@@ -314,7 +314,7 @@ def worst_utilisation(outages: Outages, title: str) -> Figure | None:
         axes.axvline(permitted, color=INK, linewidth=0.9, linestyle=(0, (5, 3)))
         top = float(shown["utilisation_percent"].max())
         axes.set_xlim(0.0, 3.2 * max(top, permitted))
-        _name_rows(axes, [str(device) for device in shown["device"]])
+        _name_rows(axes, [device_told(device) for device in shown["device"]])
         tight = TIGHT_PERCENT / 100.0 * permitted
         axes.set_xticks([tick for tick in axes.get_xticks() if tick <= 1.1 * max(top, permitted)])
         axes.tick_params(axis="x", labelsize=8)

@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from tractionpower.reporting.facts.device_words import (
+    device_told,
     kind_order,
     kind_told,
     supply_points_along_line,
@@ -129,7 +130,7 @@ def _draw_utilisation(axes: Axes, rows: pd.DataFrame, permitted: float) -> None:
     texts = [f"{number(value, 0)} %, {window_told(window)}" for value, window in zip(values, rows["window_s"], strict=True)]
     axes.bar_label(drawn, texts, padding=2, fontsize=SMALLEST, color=INK, bbox=BARE)
     axes.axvline(permitted, color=INK, linewidth=0.9, linestyle=(0, (5, 3)))
-    axes.set_yticks(place, [shortened(str(name), MOST_LETTERS) for name in rows["device"]], fontsize=SMALLEST)
+    axes.set_yticks(place, [shortened(device_told(name), MOST_LETTERS) for name in rows["device"]], fontsize=SMALLEST)
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_axisbelow(True)
     axes.grid(visible=False, axis="y")
@@ -175,7 +176,7 @@ def _draw_durations(axes: Axes, rows: pd.DataFrame) -> tuple[int, int]:
             own["share_percent"],
             own["current_a"],
             linewidth=1.2,
-            label=f"{shortened(str(device), 24)}: {number(peak, 0)} A",
+            label=f"{shortened(device_told(device), 24)}: {number(peak, 0)} A",
             **style,
         )
     axes.set_ylim(0.0, None)

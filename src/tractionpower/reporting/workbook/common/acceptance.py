@@ -10,6 +10,7 @@ from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule
 
+from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill
@@ -190,7 +191,7 @@ def _lines(rows: Sequence[Accepted]) -> Iterator[tuple[Any, ...]]:
         known.add(cell)
         yield (
             number, recorded(row.name), row.found, tr(_SENSES[row.sense]), limit, row.unit, row.tolerance or None,
-            _margin(row), _verdict(row), tr(group_of(row)), recorded(row.place), row.time,
+            _margin(row), _verdict(row), tr(group_of(row)), device_told(row.place), row.time,
             limit_in_words(row.limit_name), tr(KNOWN_AS.get(row.status, row.status)), recorded(row.source),
         )  # fmt: skip
 

@@ -11,6 +11,7 @@ from typing import Any
 from openpyxl.formatting.rule import FormulaRule
 from openpyxl.styles import Alignment
 
+from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.texts import mark, recorded, tr, trn
 from tractionpower.reporting.workbook.common.acceptance import (
     MET,
@@ -159,7 +160,7 @@ def _listed(rows: Sequence[Accepted]) -> list[int]:
 
 def _verdict(page: Page, row: Accepted, number: int) -> None:
     at, word = page.next, word_of(row)
-    name, where = recorded(row.name), ", ".join(part for part in (recorded(row.place), row.time) if part)
+    name, where = recorded(row.name), ", ".join(part for part in (device_told(row.place), row.time) if part)
     found, limit = number_in(row.found), number_in(row.limit_value)
     cells: tuple[tuple[Any, str], ...] = (
         (name[:1].upper() + name[1:], "any"), ("", "any"),

@@ -14,7 +14,7 @@ _FIGURES = (
     Column("unit"),
     Column("of", widest=34),
     Column("how it is computed", "beside", widest=90),
-    Column("by", widest=50),
+    Column("defined by", widest=50),
     Column("name in key_figures.json", widest=46),
 )
 _COLUMNS = (
@@ -71,7 +71,7 @@ def add(book: Book) -> None:
     figures = list(_figures(book))
     if figures:
         page = book.page("Definitions", "Definitions of the key figures")
-        page.note("Voltages, currents and powers are means of a time step. What is left empty under by is the program's own.")
+        page.note("Voltages, currents and powers are means of a time step. Without an entry under defined by: the program's own.")
         page.table(_FIGURES, figures, frozen=True)
     columns = list(_columns(book))
     if columns:

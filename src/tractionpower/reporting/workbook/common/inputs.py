@@ -29,7 +29,7 @@ MANY = ("contingency", "sweep")
 
 _STUDY = ("day", "coupling", "coupling_voltage_v", "seed", "coast_without_voltage_s")
 
-_DEFAULTS = (
+_DEFAULTS = mark(
     "Given: the value differs from the default of the program; default: it is that value, given or not; left out: neither the"
     " study nor the program sets it, and its meaning says what holds instead."
 )

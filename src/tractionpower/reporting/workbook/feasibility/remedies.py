@@ -39,7 +39,7 @@ _COLUMNS = (
 _SENSITIVITIES = (
     Column("what is changed", widest=18),
     Column("subject", widest=18),
-    Column("by", widest=10),
+    Column("by how much", widest=10),
     Column("as options of the command line", widest=44),
     Column("change of loss, all trains [s]", "0.00"),
 )

@@ -15,6 +15,7 @@ from openpyxl.worksheet.table import Table, TableStyleInfo
 
 from tractionpower.model.quantity import Quantity
 from tractionpower.reporting.texts import mark, recorded, tr
+from tractionpower.reporting.texts.recorded import HEADINGS
 from tractionpower.reporting.workbook.frame.cells import clean, days, put, shorten
 from tractionpower.reporting.workbook.frame.formulas import Formula
 
@@ -54,7 +55,7 @@ LINE_POINTS = 15.0
 CHART_ROWS = 30
 """Rows that a chart covers."""
 
-_BARE = {"km": mark("place [km]"), "kmh": mark("speed [km/h]"), "permille": mark("slope [‰]")}
+_BARE = {"km": mark("place [km]"), "kmh": mark("speed [km/h]"), "permille": mark("slope [‰]"), "unit": mark("type of unit")}
 _FIXED = {"0": 0, "0.0": 1, "0.00": 2, "0.000": 3, "0.0000": 4, "0.00000": 5}
 
 
@@ -65,7 +66,9 @@ def heading_of(name: str) -> str:
     ('no load voltage [V]', 'place [km]')
     """
     quantity = Quantity(name, "")
-    return tr(_BARE[name]) if name in _BARE else f"{recorded(quantity.words)}{f' [{quantity.unit}]' if quantity.unit else ''}"
+    if name in _BARE or quantity.heading in HEADINGS:
+        return tr(_BARE.get(name, quantity.heading))
+    return f"{recorded(quantity.words)}{f' [{quantity.unit}]' if quantity.unit else ''}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +127,7 @@ class Page:
 
     def __init__(self, book: Book, name: str, title: str) -> None:
         self.book, self.name, self.title = book, name, tr(title)
-        self.sheet = book.workbook.create_sheet(shorten(tr(name), SHEET_NAME_LENGTH))
+        self.sheet = book.workbook.create_sheet(shorten(recorded(name), SHEET_NAME_LENGTH))
         self.styles = book.styles
         self.next = 1
         self._needed: dict[int, float] = {}

@@ -8,6 +8,7 @@ from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule
 
+from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.facts.outages import COMPUTED, Failure, Outages
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.common.acceptance import Accepted
@@ -189,6 +190,10 @@ LIMIT_WORDS = {
 }
 
 
+DEVICES = ("utilisation_device", "breaker_device")
+"""Figures of a case that name a device."""
+
+
 def _beyond(check: Check, limits: Mapping[str, str]) -> str:
     """Return the test that a figure is beyond its limit, such as ``<$B$3-0.1``."""
     limit = limits.get(check.limit, "0")
@@ -212,6 +217,7 @@ def _rows(
     base = {case["grid"]: (number, case) for number, case in enumerate(outages.by_id.values(), 1) if case["kind"] == "base"}
     for case in outages.by_id.values():
         cells = {column.key: figure_of(case, column.key) for column in columns}
+        cells |= {key: device_told(cells[key]) for key in DEVICES if cells.get(key)}
         for figure in sheet.changes:
             cells[f"change_{figure}"] = _change(case, figure, base.get(case["grid"]))
         cells[HOLDS] = _holds(outages, case, checks, limits)
@@ -274,7 +280,7 @@ def _told(outages: Outages, case: Case, columns: Sequence[Column]) -> list[Any]:
 
 
 def _failure(failure: Failure) -> str:
-    return failure.words if failure.short == failure.words else f"{failure.short}: {failure.words}"
+    return failure.words if failure.short == failure.words else f"{recorded(failure.short)}: {failure.words}"
 
 
 def _colour_status(block: Block) -> None:

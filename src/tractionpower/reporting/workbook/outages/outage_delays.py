@@ -66,7 +66,7 @@ _SUMS = (
     Column("added, at most [s]", "0.0"),
     Column("train", "beside", 24),
     Column("added, all trains [s]", "0"),
-    Column("stuck", "0"),
+    Column("trains stuck", "0"),
 )
 _TRAINS = (
     Column("what is out", widest=60),

@@ -10,7 +10,7 @@ import pandas as pd
 from openpyxl.utils import absolute_coordinate
 
 from tractionpower.model.limits import Limit
-from tractionpower.reporting.facts.device_words import KINDS, kind_order
+from tractionpower.reporting.facts.device_words import KINDS, device_told, kind_order
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.texts import mark, tr
@@ -126,7 +126,7 @@ def _device_row(outages: Outages, row: dict[Any, Any], limit: str) -> tuple[Any,
         word = NO if value > outages.scenario.sizing.utilisation_percent * (1.0 + 1e-9) else YES
         holds = judged(at_most("use", limit), word, str(row["met"]))
     return (
-        row["device"], tr(KINDS.get(kind, kind)), row["base_percent"], use, change, holds,
+        device_told(row["device"]), tr(KINDS.get(kind, kind)), row["base_percent"], use, change, holds,
         outages.told(row["case"]) if rated else "",
         window_in_words(row["window_s"]) if np.isfinite(row["window_s"]) and rated else "", load, permitted,
         row["peak_a"], outages.told(row["peak_case"]),

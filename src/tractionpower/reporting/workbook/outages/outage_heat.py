@@ -11,7 +11,7 @@ from openpyxl.formatting.rule import ColorScaleRule, FormulaRule
 from openpyxl.styles import Font
 from openpyxl.utils import get_column_letter
 
-from tractionpower.reporting.facts.device_words import KINDS, kind_order
+from tractionpower.reporting.facts.device_words import KINDS, device_told, kind_order
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.texts import tr
@@ -58,7 +58,7 @@ def add(book: Book, outages: Outages) -> None:
     for at, (device, values) in enumerate(zip(wide.index, wide.to_numpy(float), strict=True), page.next + 1):
         known = [float(value) for value in values if np.isfinite(value)]
         most = Formula(f"MAX(D{at}:{get_column_letter(3 + len(values))}{at})", max(known)) if known else None
-        cells.append((device, tr(KINDS.get(kinds[device], kinds[device])), most, *values))
+        cells.append((device_told(device), tr(KINDS.get(kinds[device], kinds[device])), most, *values))
     block = page.table(columns, cells, frozen=True)
     page.sheet.freeze_panes = f"D{block.first}"
     _turn(page, block)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages
-from tractionpower.reporting.texts import mark, tr
+from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page
@@ -169,7 +169,7 @@ def _why(outages: Outages, cases: Mapping[str, Case]) -> str:
     found: dict[str, list[str]] = {}
     for grid, case in cases.items():
         for failure in outages.failures(case):
-            grids = found.setdefault(failure.short, [])
+            grids = found.setdefault(recorded(failure.short), [])
             grids += [grid] if grid not in grids else []
     if len(outages.grids) == 1:
         return "; ".join(found)

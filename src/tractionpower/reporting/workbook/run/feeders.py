@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from tractionpower.model.base import parse_time
+from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, RED_FILL
@@ -90,7 +91,7 @@ def _row(facts: Facts, link: dict[str, Any]) -> list[Any]:
     highest, setting = facts.value(place, "highest_current_a"), link["trip_current_a"]
     known = highest is not None and setting
     return [
-        place.partition(" ")[2],
+        device_told(place.partition(" ")[2]),
         tr(KINDS.get(link["kind"], link["kind"])),
         link["track"],
         link["km"],

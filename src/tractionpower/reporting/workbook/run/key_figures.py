@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from tractionpower.model.base import parse_time
+from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.texts import recorded, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS
@@ -74,7 +75,7 @@ def _row(figure: dict[str, Any]) -> tuple[Any, ...]:
     name, status = figure["name"], figure.get("status", "")
     return (
         heading_of(name).split(" [")[0],
-        recorded(figure.get("place") or "") or tr("whole run"),
+        device_told(figure.get("place") or "") or tr("whole run"),
         figure["value"],
         figure.get("unit", ""),
         parse_time(figure.get("time") or ""),

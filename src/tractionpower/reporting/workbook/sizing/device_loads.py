@@ -12,7 +12,7 @@ from openpyxl.formatting.rule import FormulaRule
 from openpyxl.utils import absolute_coordinate
 
 from tractionpower.model.base import format_time
-from tractionpower.reporting.facts.device_words import supply_points_along_line, zones_along_line
+from tractionpower.reporting.facts.device_words import device_told, supply_points_along_line, zones_along_line
 from tractionpower.reporting.figures.base.labels import CLOCK_STEPS_S
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.common.acceptance import Accepted
@@ -83,7 +83,7 @@ def _durations(book: Book) -> None:
 
 def _pivot(rows: pd.DataFrame) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
     """Return the devices with the highest currents, and a row for each share with their currents."""
-    rows = rows.assign(device=rows["device"].astype(str))
+    rows = rows.assign(device=rows["device"].map(device_told).astype(str))
     highest = rows.groupby("device")["current_a"].max().sort_values(ascending=False, kind="stable")
     names = [str(name) for name in highest.head(MOST_CURVES).index]
     wide = rows[rows["device"].isin(names)].pivot_table(index="share_percent", columns="device", values="current_a")[names]

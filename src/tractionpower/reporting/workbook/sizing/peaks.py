@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 
 from tractionpower.model.base import format_time
-from tractionpower.reporting.facts.device_words import KINDS
+from tractionpower.reporting.facts.device_words import KINDS, device_told
 from tractionpower.reporting.texts import mark, number, tr
 from tractionpower.reporting.workbook.common.acceptance import Accepted
 from tractionpower.reporting.workbook.frame.book import Book
@@ -84,7 +84,7 @@ def _peaks(rows: pd.DataFrame, places: Places) -> Iterator[tuple[Any, ...]]:
         share = Formula("100*{part}/{peak}", 100.0 * row["part_a"] / row["peak_a"]) if is_known else None
         kind = str(row["kind"])
         yield (
-            row["device"], tr(KINDS.get(kind, kind)), row["peak_a"], row["peak_s"], str(row["train"]) or tr(OTHERS),
+            device_told(row["device"]), tr(KINDS.get(kind, kind)), row["peak_a"], row["peak_s"], str(row["train"]) or tr(OTHERS),
             row["train_current_a"], row["track"], row["position_km"], row["part_a"], share,
         )  # fmt: skip
 
@@ -166,7 +166,7 @@ def _breaker_rows(rows: pd.DataFrame, levels: list[float], limit: tuple[str, flo
         holds: Formula | str = Formula(verdict, tr(NO_SETTING))
         if isinstance(value, float):
             holds = judged(verdict, NO if value > limit[1] * (1.0 + 1e-9) else YES, str(first["met"]))
-        yield device, setting, peak, first["peak_s"], share, holds, first["trips"], *times
+        yield device_told(device), setting, peak, first["peak_s"], share, holds, first["trips"], *times
 
 
 def _accepted(rows: pd.DataFrame, permitted: float) -> Iterator[Accepted]:

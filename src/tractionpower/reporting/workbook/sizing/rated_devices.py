@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from tractionpower.reporting.facts.device_words import KINDS
+from tractionpower.reporting.facts.device_words import KINDS, device_told
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS
@@ -94,7 +94,7 @@ def _columns(*, several: bool, has_ends: bool) -> list[Column]:
 def _device(row: dict[Any, Any], numbers: dict[tuple[str, str], int]) -> dict[str, Any]:
     kind, status = str(row["kind"]), str(row["status"])
     return {
-        "device": row["device"], "kind": tr(KINDS.get(kind, kind)), "track": row["track"], "low": row["from_km"],
+        "device": device_told(row["device"]), "kind": tr(KINDS.get(kind, kind)), "track": row["track"], "low": row["from_km"],
         "high": row["to_km"], "duty": row["duty_class"], "window": window_in_words(row["window_s"]),
         "status": tr(KNOWN_AS.get(status, status)), "source": numbers.get((status, str(row["source"]))),
     }  # fmt: skip

@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from tractionpower.reporting.facts.device_words import KINDS
+from tractionpower.reporting.facts.device_words import KINDS, device_told
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.page import Column
@@ -57,7 +57,7 @@ def _rated(book: Book, rows: pd.DataFrame) -> None:
 def _device(row: dict[Any, Any]) -> dict[str, Any]:
     kind = str(row["kind"])
     return {
-        "device": row["device"], "kind": tr(KINDS.get(kind, kind)), "duty": row["duty_class"],
+        "device": device_told(row["device"]), "kind": tr(KINDS.get(kind, kind)), "duty": row["duty_class"],
         "window": window_in_words(row["window_s"]), "rules": tr(RULES) if row["ruling"] else "",
     }  # fmt: skip
 
@@ -79,4 +79,4 @@ def _matrix(rows: pd.DataFrame, windows: list[float]) -> Iterator[tuple[Any, ...
     for device, own in rows.groupby(rows["device"].astype(str), sort=False):
         kind = str(own["kind"].iloc[0])
         loads = dict(zip(own["window_s"], own["load_a"], strict=True))
-        yield device, tr(KINDS.get(kind, kind)), *(loads.get(window) for window in windows)
+        yield device_told(device), tr(KINDS.get(kind, kind)), *(loads.get(window) for window in windows)

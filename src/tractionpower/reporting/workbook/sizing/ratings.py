@@ -10,7 +10,7 @@ from openpyxl.utils import absolute_coordinate
 
 from tractionpower.model.base import format_time
 from tractionpower.model.ratings import DutyRow
-from tractionpower.reporting.facts.device_words import KINDS, kind_order
+from tractionpower.reporting.facts.device_words import KINDS, device_told, kind_order
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.texts import mark, number, recorded, tr
 from tractionpower.reporting.workbook.common.acceptance import Accepted
@@ -145,7 +145,7 @@ def _said(ruling: pd.DataFrame, permitted: float, cell: str = "") -> tuple[Formu
         "rated": ("SUM({kinds_rated})", len(rated)),
         "beyond": ("SUM({kinds_beyond})", beyond),
         "permitted": (cell, number(permitted, 6)),
-        "device": (f"INDEX({{kinds_device}},{row})", worst["device"]),
+        "device": (f"INDEX({{kinds_device}},{row})", device_told(worst["device"])),
         "use": ("ROUND(MAX({kinds_most}),0)", rounded(worst["utilisation_percent"])),
         "window": (f"INDEX({{kinds_window}},{row})", window_in_words(worst["window_s"])),
     }
@@ -197,7 +197,7 @@ def _kind_row(kind: str, own: pd.DataFrame, sheet: str) -> tuple[Any, ...]:
     most = use_of(load, permitted)
     holds = f'IF({{beyond}}>0,"{tr(NO)}","{tr(YES)}")'
     return (
-        *first, Formula(f"MAX({{{name}_use}})", most), Formula(f"INDEX({{{name}_device}},{at})", worst["device"]),
+        *first, Formula(f"MAX({{{name}_use}})", most), Formula(f"INDEX({{{name}_device}},{at})", device_told(worst["device"])),
         Formula(f"INDEX({{{name}_window}},{at})", window_in_words(worst["window_s"])),
         Formula(f"INDEX({{{name}_left}},{at})", permitted - load), Formula(holds, tr(NO if beyond else YES)), sheet,
     )  # fmt: skip

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.sweep_data import SweepData
-from tractionpower.reporting.texts import mark, number, tr, trn
+from tractionpower.reporting.texts import mark, number, recorded, tr, trn
 from tractionpower.reporting.workbook.common import acceptance, assumptions, definitions, evidence, inputs, not_covered
 from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
@@ -80,7 +80,7 @@ def _verdicts(data: SweepData) -> Iterator[Said]:
         ends = (
             tr(
                 "{end} {value} (case {case}: {subject})",
-                end=tr(ENDS[word]), value=number(one["value"]), case=one["case"], subject=subjects.get(one["case"], ""),
+                end=tr(ENDS[word]), value=number(one["value"]), case=one["case"], subject=recorded(subjects.get(one["case"], "")),
             )
             for word, one in extremes[name].items()
         )  # fmt: skip
