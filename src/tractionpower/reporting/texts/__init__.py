@@ -98,6 +98,15 @@ def number(value: float, digits: int = 1, *, bare: bool = True) -> str:
     return text.replace(".", ",") if _language.get() == "pl" else text
 
 
+def decimal(text: str) -> str:
+    """Return a text with the decimal sign of the language in its numbers.
+
+    >>> decimal("0.95")
+    '0.95'
+    """
+    return _number(text, _language.get())
+
+
 @cache
 def _catalogue(chosen: Language) -> gettext.NullTranslations:
     if chosen == "en":

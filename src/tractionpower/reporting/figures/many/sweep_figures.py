@@ -17,7 +17,7 @@ from tractionpower.reporting.figures.base.axes import draw_limits
 from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, PAGE, SMALLEST, STYLE, VERMILION, new_figure, save_all
 from tractionpower.reporting.figures.supply.panels import LETTER_7, head, legend_below, once
-from tractionpower.reporting.texts import number, tr
+from tractionpower.reporting.texts import decimal, number, tr
 from tractionpower.results.results import Results
 from tractionpower.studies.sweep.cases import number_of
 from tractionpower.studies.sweep.differences import HIGHER_IS_BETTER, NOT_JUDGED
@@ -100,7 +100,7 @@ def _curves(data: SweepData) -> Figure:
         texts = [_value(value) for value in values]
         wide = LETTER_7 * (sum(map(len, texts)) + 2 * len(texts)) > PAGE - 1.0
         turned: Any = {"rotation": 45, "ha": "right", "rotation_mode": "anchor"} if wide else {}
-        panels[-1].set_xticks([float(at[value] or 0.0) for value in values], texts, **turned)
+        panels[-1].set_xticks([float(at[value] or 0.0) for value in values], [decimal(text) for text in texts], **turned)
     panels[-1].set_xlabel(shortened(data.names[path], 90), fontsize=8)
     head(figure, f"{data.title}: {shortened(data.names[path], 90)}")
     legend_below(figure, *once(panels))
@@ -139,8 +139,8 @@ def _maps(data: SweepData) -> Figure:
         axes.set_title(tr(WORDS[name]).replace("\n", " "), loc="left", fontsize=SMALLEST)
         crowded = LETTER_7 * (max(map(len, columns)) + 2) * len(columns) > (PAGE - 1.5) / wide - 1.0
         turned: Any = {"rotation": 45, "ha": "right", "rotation_mode": "anchor"} if crowded else {}
-        axes.set_xticks(range(len(columns)), [_value(text) for text in columns], fontsize=SMALLEST, **turned)
-        axes.set_yticks(range(len(rows)), [_value(text) for text in rows], fontsize=SMALLEST)
+        axes.set_xticks(range(len(columns)), [decimal(_value(text)) for text in columns], fontsize=SMALLEST, **turned)
+        axes.set_yticks(range(len(rows)), [decimal(_value(text)) for text in rows], fontsize=SMALLEST)
         axes.set_xlabel(shortened(data.names[across], MOST_LETTERS), fontsize=SMALLEST)
         axes.set_ylabel(shortened(data.names[down], MOST_LETTERS), fontsize=SMALLEST)
     both = {"first": shortened(data.names[across], 60), "second": shortened(data.names[down], 60)}
@@ -210,7 +210,7 @@ def _labels(data: SweepData, cases: list[str]) -> tuple[list[str], str]:
     """Return labels of cases and what is said of all of them: their values alone where all set the same inputs."""
     changes = data.changes.loc[cases]
     if changes.notna().all(axis=None):
-        texts = [", ".join(_short(str(value)) for value in changes.loc[case]) for case in cases]
+        texts = [", ".join(decimal(_short(str(value))) for value in changes.loc[case]) for case in cases]
         told = tr("case: {inputs}", inputs=", ".join(data.names[path] for path in data.paths))
     else:
         subjects = dict(zip(data.cases["case"], data.cases["subject"], strict=True))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from tractionpower.model.base import format_time
-from tractionpower.reporting.texts import mark, number, recorded, tr, trn
+from tractionpower.reporting.texts import decimal, mark, number, recorded, tr, trn
 from tractionpower.reporting.workbook.feasibility.feasibility import verdict_in_words
 from tractionpower.reporting.workbook.frame.facts import STATES, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -85,8 +85,9 @@ def run_trust(facts: Facts) -> Iterator[Said]:
         yield tr(LEDGERS.get(name, name)), *_ledger(ledger)
     overlaps = run.get("overlaps") or {}
     if overlaps.get("count"):
-        told = overlaps.get("message") or f"{overlaps['count']} times two trains stood on the same place."
-        yield tr("Overlaps"), recorded(str(told)), "doubt"
+        said, count = overlaps.get("message"), int(overlaps["count"])
+        met = trn("Two trains stood on the same place once.", "Two trains stood on the same place {count} times.", count)
+        yield tr("Overlaps"), recorded(str(said)) if said else met, "doubt"
     yield from notes_of(run.get("notes") or [])
 
 
@@ -117,7 +118,7 @@ def _trains(trains: list[dict[str, Any]]) -> str:
     for train in trains:
         state = str(train.get("status", ""))
         counts[state] = counts.get(state, 0) + 1
-    parts = [f"{count} {tr(STATES.get(state, state))}" for state, count in sorted(counts.items())]
+    parts = [tr("{count} {status}", count=count, status=tr(STATES.get(state, state))) for state, count in sorted(counts.items())]
     return f"{trn('{count} train', '{count} trains', len(trains))}: {', '.join(parts)}."
 
 
@@ -140,9 +141,9 @@ def _timetable(facts: Facts) -> tuple[str, str]:
 def _ledger(ledger: dict[str, Any]) -> tuple[str, str]:
     gap = []
     if "worst_gap_w" in ledger:
-        gap.append(tr("worst gap {gap} W", gap=f"{ledger['worst_gap_w']:.2g}"))
+        gap.append(tr("worst gap {gap} W", gap=decimal(f"{ledger['worst_gap_w']:.2g}")))
     if "worst_gap_share" in ledger:
-        share = tr("worst gap {gap} % of what is exchanged", gap=f"{max(ledger['worst_gap_share'], 0.0) * 100.0:.2g}")
+        share = tr("worst gap {gap} % of what is exchanged", gap=decimal(f"{max(ledger['worst_gap_share'], 0.0) * 100.0:.2g}"))
         gap.append(f"{share} ({tr('train')} {ledger['train']})" if ledger.get("train") else share)
     words = tr("Closes") if ledger.get("closes") else tr("Does not close")
     return f"{words}: {', '.join(gap)}." if gap else f"{words}.", "good" if ledger.get("closes") else "bad"

@@ -79,7 +79,9 @@ def _trust(outages: Outages) -> Any:
     def said(facts: Facts) -> Iterator[Said]:
         cases = outages.cases
         counts = cases["status"].value_counts()
-        parts = ", ".join(f"{counts[status]} {recorded(status)}" for status in sorted(counts.index))
+        parts = ", ".join(
+            tr("{count} {status}", count=counts[status], status=recorded(status)) for status in sorted(counts.index)
+        )
         bare = cases[~cases["status"].isin(COMPUTED)]
         yield (
             tr("Status of the cases"),

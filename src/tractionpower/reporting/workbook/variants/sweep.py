@@ -89,7 +89,9 @@ def _verdicts(data: SweepData) -> Iterator[Said]:
 
 def _trust(data: SweepData) -> Iterator[Said]:
     counts = data.cases["status"].value_counts()
-    parts = ", ".join(f"{counts[status]} {tr(STATUSES.get(status, status))}" for status in sorted(counts.index))
+    parts = ", ".join(
+        tr("{count} {status}", count=counts[status], status=tr(STATUSES.get(status, status))) for status in sorted(counts.index)
+    )
     style = "good" if set(counts.index) == {"complete"} else "doubt"
     told = trn("{count} case: {parts}.", "{count} cases: {parts}.", len(data.cases), parts=parts)
     yield tr("Status of the cases"), told, style

@@ -8,6 +8,7 @@ from typing import Any
 from openpyxl.formatting.rule import FormulaRule
 from openpyxl.styles import Font
 
+from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.facts.sweep_data import SweepData
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.common.acceptance import MET, OPEN, VIOLATED, Accepted, colour_words
@@ -91,6 +92,10 @@ def add_variants(book: Book, data: SweepData, cases: Cases, cells: Cells) -> Blo
     return block
 
 
+def _figure(row: Mapping[Any, Any], name: str) -> Any:
+    return device_told(row[name]) if name in ("utilisation_device", "breaker_device") and row[name] else row[name]
+
+
 def _case_row(cases: Cases, row: Mapping[Any, Any], told: tuple[list[str], list[str], int]) -> Iterator[Any]:
     paths, figures, number = told
     data, case = cases.data, row["case"]
@@ -148,7 +153,7 @@ def add_figures(book: Book, data: SweepData, cases: Cases, cells: Cells) -> None
             columns.append(Column(words, style, 18, beside))
             names.append(beside)
     lines = (
-        [tr("base") if row["kind"] == "base" else row["case"], number, *(row[name] for name in names)]
+        [tr("base") if row["kind"] == "base" else row["case"], number, *(_figure(row, name) for name in names)]
         for number, row in enumerate(cases.rows)
     )
     block = page.table(columns, lines, frozen=True)
