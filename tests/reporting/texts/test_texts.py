@@ -8,6 +8,7 @@ import pytest
 from babel.messages.pofile import read_po
 
 from tractionpower.reporting import texts
+from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.texts import current_language, language, number, recorded, tr, trn
 
 ROOT = Path(__file__).parents[3]
@@ -85,3 +86,23 @@ def test_names_with_braces_do_no_harm():
     assert tr("{name} of the line", name="{0} {evil}") == "{0} {evil} of the line"
     with language("pl"):
         assert tr("") == ""
+
+
+def test_numbers_of_recorded_sentences_take_the_decimal_sign():
+    with language("pl"):
+        assert recorded("track 1 km 1.1-10.8") == "tor 1 km 1,1–10,8"
+        told = recorded("A and B (06:30:51, track 1, km 211.0, 127 steps); C and D (06:50:51, track 1, km 211.5, 3 steps)")
+    assert told == "A i B (06:30:51, tor 1, km 211,0, liczba kroków: 127); C i D (06:50:51, tor 1, km 211,5, liczba kroków: 3)"
+
+
+def test_words_of_the_user_stay_as_they_are():
+    text = "own table (after Sochon 2003 and a script); nothing of it is 3 kV, name is old"
+    with language("pl"):
+        assert recorded(text) == text
+
+
+def test_devices_are_named_in_the_language_of_the_report():
+    assert device_told("Psary unit, whole run") == "Psary unit, whole run"
+    with language("pl"):
+        assert device_told("Psary unit, whole run") == "Psary, zespół, całe obliczenie"
+        assert device_told("Psary 1 low_km") == "Psary 1, niższy km"

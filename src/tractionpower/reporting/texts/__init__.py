@@ -27,7 +27,7 @@ _NUMBERS = frozenset({
 })  # fmt: skip
 """Places of recorded sentences that hold a number, a time or a length of time: other text there is of another sentence."""
 _NUMBER = r"-?\d[\d.,:e+-]*(?: h| min| s)?"
-_OTHER = r"[^()]+?"  # the second of a pair, of which a list may hold several
+_BARE = r"[^,;()]+?"  # a name in a list of pairs of trains
 _DECIMAL = re.compile(r"(?<![\d.:])(-?\d+)\.(\d+)(?![\d.:])")
 
 
@@ -117,11 +117,12 @@ def _catalogue(chosen: Language) -> gettext.NullTranslations:
 
 @cache
 def _patterns() -> list[tuple[str, re.Pattern[str]]]:
-    """Return recorded sentences that have places, the most specific first, each as a pattern."""
+    """Return recorded sentences that have places, each as a pattern: the most specific first, those that part a text last."""
     found = []
-    for sentence in sorted((each for each in SENTENCES if "{" in each), key=lambda each: -len(_PLACE.sub("", each))):
+    whole = {each for each in SENTENCES if "{" in each}.difference(TOGETHER)
+    for sentence in (*sorted(whole, key=lambda each: (-len(_PLACE.sub("", each)), each)), *TOGETHER):
         parts = _PLACE.split(sentence)
-        held = [_NUMBER if part in _NUMBERS else _OTHER if part == "other" else ".+?" for part in parts]
+        held = [_NUMBER if part in _NUMBERS else _BARE if part in ("one", "other", "time", "track") else ".+?" for part in parts]
         pattern = "".join(re.escape(part) if k % 2 == 0 else f"(?P<{part}>{held[k]})" for k, part in enumerate(parts))
         found.append((sentence, re.compile(pattern, re.DOTALL)))
     return found

@@ -209,7 +209,7 @@ NOTES = (
     "trains {trains}",
     "trains do not see each other; these overlap: {pairs}",
     "trains do not see each other; these overlap: {pairs} and {count} more pairs",
-    "{first} and {other} ({time}, track {track}, km {km}, {count} steps)",
+    "{one} and {other} ({time}, track {track}, km {km}, {count} steps)",
     "windows longer than what counts of the run, {seconds} s, are held against the whole of it: {windows}",
     "without a rating, not judged: {devices}",
     "held against recalled values, which the user may replace: {kinds}",
@@ -225,8 +225,8 @@ NOTES = (
 )
 """Notes of a run, of ratings and of cases."""
 
-TOGETHER = ("{first} and {second}", "{first} + {second}", "{first}; {second}", "{first}: {second}", "{first}, {second}")
-"""How parts stand together that are looked up one by one; those of equal length in the order in which a text is parted."""
+TOGETHER = ("{first}; {second}", "{first}: {second}", "{first}, {second}", "{first} + {second}", "{first} and {second}")
+"""How parts stand together that are looked up one by one; in the order in which a text is parted."""
 
 SENTENCES: tuple[str, ...] = (
     *FIGURES, *HEADINGS, *SHEETS, *DEFINITIONS, *VERDICTS, *FAILURES, *PLACES, *EVENTS, *NOTES, *OF_STUDIES, *TOGETHER,

@@ -25,7 +25,7 @@ def test_a_key_figure_is_defined_once(small, case):
 def test_a_definition_tells_of_what_and_by_which_standard(small):
     rows = {row["name in key_figures.json"]: row for row in read_table(small["Definitions"])}
     assert rows["lowest_voltage_v"]["of"] == "the worst of the run"
-    assert rows["lowest_voltage_v"]["by"] == "EN 50163, U_min2; secondary"
+    assert rows["lowest_voltage_v"]["defined by"] == "EN 50163, U_min2; secondary"
     assert rows["journey_time_s"]["of"] == "each train"
     assert rows["mean_useful_voltage_time_mean_v"]["of"] == "each train, each feeding zone"
     assert rows["source_energy_kwh"]["of"] == "the whole run"
