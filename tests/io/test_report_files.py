@@ -6,10 +6,11 @@ from PIL import Image
 
 import tractionpower
 from tractionpower.errors import InputError
-from tractionpower.io.report_files import REPORT_FILE, is_edited, keep_report, kept_report, read_report
+from tractionpower.io.report_files import REPORT_FILE, errors_of_figures, is_edited, keep_report, kept_report, read_report
 from tractionpower.io.scenario_files import load_scenario, read_scenario, save_scenario
 from tractionpower.io.templates import write_template
-from tractionpower.model.report import SHEETS, Document, Report, ReportFigures
+from tractionpower.model.report import FIGURES, SHEETS, Document, Report, ReportFigures
+from tractionpower.reporting.figures.registry import figure_names
 
 
 def problems(path):
@@ -69,7 +70,43 @@ language: fr
 def test_an_unknown_sheet_is_a_warning_that_names_those_known(template):
     (problem,) = read_report(template("leave_out: [Trains, Trainz, acceptance]\n")).problems
     assert (problem.severity, problem.path) == ("warning", "report.leave_out[1]")
-    assert all(name in problem.allowed for name in SHEETS)
+    assert "did you mean Trains?" in problem.remedy
+    assert "Trains" in problem.allowed
+    assert len(problem.allowed) < 150  # and not the names of all sheets, for each mistake
+
+
+def test_an_unknown_figure_is_told_with_its_line(template):
+    text = "figures:\n  names:\n    - train_graph\n    - train_grap\n    - trains/7\n    - curves_ed250\n    - demand_2\n"
+    (problem,) = read_report(template(text)).problems
+    assert (problem.severity, problem.place.rpartition(":")[2]) == ("warning", "4")
+    assert problem.remedy == "did you mean train_graph?"
+
+
+def test_what_hinders_figures_is_an_error_before_anything_is_computed(template):
+    read = read_report(template("figures: {names: [train_grap, trains/7, trains/8]}\n"))
+    errors = errors_of_figures(read.report, read.problems, ["7", "70"])
+    assert [(error.found, error.severity) for error in errors] == [("'train_grap'", "error"), ("'trains/8'", "error")]
+
+
+def test_every_figure_that_the_program_names_is_known():
+    assert set(figure_names()) <= set(FIGURES), "put them into FIGURES of tractionpower.model.report"
+    schema = Report.model_json_schema()
+    assert schema["properties"]["sheets"]["examples"] == [list(SHEETS)]
+    assert schema["$defs"]["ReportFigures"]["properties"]["names"]["examples"] == [list(FIGURES)]
+
+
+@pytest.mark.parametrize("date", ["2026-11-22", "22.11.2026", "22 listopada 2026 r.", "Q4 2026"])
+def test_a_date_is_written_as_the_office_does(template, date):
+    assert read_report(template(f"document: {{date: {date}}}\n")).report.document.date == date
+
+
+@pytest.mark.parametrize("date", ["tomorrow", "2026-02-30", "22.11.26"])
+def test_what_has_no_year_and_a_day_that_is_none_are_no_dates(template, date):
+    assert [problem.path for problem in problems(template(f"document: {{date: {date}}}\n"))] == ["report.document.date"]
+
+
+def test_an_empty_list_of_sheets_is_a_mistake(template):
+    assert [problem.path for problem in problems(template("sheets: []\nleave_out: [Cover]\n"))] == ["report.sheets"]
 
 
 def test_names_in_another_language_are_left_to_the_reports_unless_they_look_misspelt(template):

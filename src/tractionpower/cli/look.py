@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING
 from tractionpower.cli.messages import tell, tell_problems
 
 if TYPE_CHECKING:
+    from tractionpower.errors import Problem
+    from tractionpower.io.scenario_files import LoadedScenario
     from tractionpower.model.report import Report
+    from tractionpower.model.scenario import Scenario
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +27,37 @@ class Look:
         The template that ``--template`` names, None without it.
     language
         The language that ``--language`` names, None without it.
+    file
+        Where that template is.
+    unknown
+        Warnings of figures that it names and the program does not know, not told yet.
     """
 
     template: Report | None = None
     language: str | None = None
+    file: str = ""
+    unknown: tuple[Problem, ...] = ()
+
+    def check(self, loaded: LoadedScenario, scenario: Scenario) -> None:
+        """Refuse a template that names figures that there are none of, before anything is computed.
+
+        Raises
+        ------
+        InputError
+            With all such names.
+        """
+        from dataclasses import replace
+
+        from tractionpower.errors import InputError
+        from tractionpower.io.report_files import errors_of_figures
+
+        own = self.template is not None
+        report, warnings = (self.template, self.unknown) if own else (loaded.report, loaded.problems)
+        errors = [] if report is None else errors_of_figures(report, warnings, [run.id for run in scenario.runs])
+        if own:
+            errors = [problem if problem.place else replace(problem, place=self.file) for problem in errors]
+        if errors:
+            raise InputError(loaded.provenance.place(errors))
 
     def report(self, folder: Path, of_study: Report | None = None, *, is_new: bool = True, keep: bool = True) -> Report:
         """Return the template of the reports in a folder of results, and keep it there.
@@ -48,6 +78,7 @@ class Look:
         from tractionpower.io.report_files import REPORT_FILE, is_edited, keep_report, kept_report
         from tractionpower.model.report import Report
 
+        tell_problems(self.unknown)
         chosen = self.template
         if chosen is None and (not is_new or is_edited(folder / REPORT_FILE)):
             kept = kept_report(folder)
@@ -72,7 +103,7 @@ def look_of(template: Path | None, language: str | None) -> Look:
     from typing import get_args
 
     from tractionpower.errors import UsageError
-    from tractionpower.io.report_files import read_report
+    from tractionpower.io.report_files import UNKNOWN_FIGURE, read_report
     from tractionpower.io.wording import shown
     from tractionpower.model.report import Language
 
@@ -81,5 +112,6 @@ def look_of(template: Path | None, language: str | None) -> Look:
     if template is None:
         return Look(None, language)
     read = read_report(template)
-    tell_problems(read.problems)
-    return Look(read.report, language)
+    unknown = tuple(problem for problem in read.problems if problem.code == UNKNOWN_FIGURE)
+    tell_problems(problem for problem in read.problems if problem not in unknown)
+    return Look(read.report, language, str(template), unknown)

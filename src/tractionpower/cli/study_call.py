@@ -152,6 +152,7 @@ def call_study(
     scenario = loaded.changed(changes or [])
     name = _study_name(loaded) if kind else loaded.folder.name
     folder = out if out is not None else Path("reports") / (f"{name}-{kind}" if kind else name)
+    (look or Look()).check(loaded, scenario)
     return StudyCall(loaded, scenario, name, folder, kind, look or Look())
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import difflib
 import hashlib
 import re
 import shutil
 import warnings
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,13 +19,19 @@ from tractionpower.io.text_files import MEGABYTE, Source, write_files
 from tractionpower.io.wording import did_you_mean, nearest, printable, shown
 from tractionpower.io.yaml_text import document
 from tractionpower.model.base import FORMAT
-from tractionpower.model.report import SHEETS, Report
+from tractionpower.model.report import FIGURES, SHEETS, TRAIN_FIGURES, Report
 
 REPORT_FILE = "report.yaml"
 """Name of a template in a folder of results."""
 
 LOGO_FILE = "report-logo"
 """Name of its logo there, without the suffix."""
+
+UNKNOWN_FIGURE = "unknown_figure"
+"""Code of problems of names that no figure has."""
+
+MOST_SHOWN = 5
+"""Names that a message shows of all that are known."""
 
 MOST_LOGO_MB = 5
 MOST_PIXELS = 50_000_000
@@ -74,7 +81,7 @@ def add_report(reader: Reader, source: Source) -> tuple[Report | None, Mark | No
     content = reader.read(source, Report)
     if content is None:
         return None, None
-    reader.problems += _unknown_sheets(content.data, content.mark)
+    reader.problems += [*_unknown_sheets(content.data, content.mark), *_unknown_figures(content.data, content.mark)]
     name = content.data.get("logo")
     logo = source.file.parent / name if isinstance(name, str) else None
     problem = _problem_of_logo(logo, str(name), content.mark.find(("logo",)).place) if logo is not None else None
@@ -169,9 +176,49 @@ def _unknown_sheets(data: Mapping[str, Any], mark: Mark) -> list[Problem]:
             if data.get("language", "en") != "en" and not nearest(name, SHEETS):
                 continue
             place, path = mark.find((key, number)).place, f"report.{key}[{number}]"
-            remedy = did_you_mean(name, SHEETS) or "mend the name or leave it out"
-            allowed = f"the name of a sheet: {', '.join(SHEETS)}"
+            remedy = did_you_mean(name, SHEETS) or "mend the name or leave it out; `tractionpower schema report` lists all names"
+            allowed = f"the name of a sheet, such as {', '.join(_nearest_names(name, SHEETS))}"
             found.append(Problem("unknown_sheet", path, shown(name), allowed, remedy, "warning", place))
+    return found
+
+
+def _unknown_figures(data: Mapping[str, Any], mark: Mark) -> list[Problem]:
+    """Return warnings of names that no figure has; a comparison with a measurement may have figures of such names."""
+    figures = data.get("figures")
+    names = figures.get("names") if isinstance(figures, dict) else None
+    found = []
+    for number, name in enumerate(names if isinstance(names, list) else ()):
+        if not isinstance(name, str) or _is_figure(name):
+            continue
+        place, path = mark.find(("figures", "names", number)).place, f"report.figures.names[{number}]"
+        remedy = did_you_mean(name, FIGURES) or "mend the name or leave it out; `tractionpower schema report` lists all names"
+        allowed = f"the name of a figure, such as {', '.join(_nearest_names(name, FIGURES))}"
+        found.append(Problem(UNKNOWN_FIGURE, path, shown(name), allowed, remedy, "warning", place))
+    return found
+
+
+def _is_figure(name: str) -> bool:
+    """Return whether some figure can have a name: one that is known, a page or member of it, or a train's."""
+    return name in FIGURES or any(name.startswith((f"{known}_", f"{known}/")) for known in FIGURES)
+
+
+def _nearest_names(name: str, known: Collection[str]) -> list[str]:
+    """Return the few of the known names that are most like a name."""
+    by_lower = {each.casefold(): each for each in known}
+    return [by_lower[each] for each in difflib.get_close_matches(name.casefold(), by_lower, MOST_SHOWN, 0.0)]
+
+
+def errors_of_figures(report: Report, warnings: Iterable[Problem], trains: Collection[str]) -> list[Problem]:
+    """Return as errors what hinders figures that a template names: warnings of unknown names, and trains that do not run.
+
+    A command that computes for hours is to know them before.
+    """
+    found = [replace(problem, severity="error") for problem in warnings if problem.code == UNKNOWN_FIGURE]
+    for number, name in enumerate(report.figures.names or ()):
+        train = name.removeprefix(f"{TRAIN_FIGURES}/")
+        if train != name and train not in trains:
+            allowed, remedy = f"{TRAIN_FIGURES}/ID of a train of the timetable", did_you_mean(train, trains) or "mend the name"
+            found.append(Problem(UNKNOWN_FIGURE, f"report.figures.names[{number}]", shown(name), allowed, remedy))
     return found
 
 

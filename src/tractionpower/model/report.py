@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+from datetime import date
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
+from pydantic_core import PydanticCustomError
 
 from tractionpower.model.base import Declaration, Format, Text
 
@@ -31,7 +34,35 @@ SHEETS = (
 )  # fmt: skip
 """Names of the sheets of all workbooks, to tell a misspelt one of a template."""
 
+TRAIN_FIGURES = "trains"
+"""Name of the figures of single trains, and of their folder."""
+
+FIGURES = (
+    "train_graph", "train_graph_fine", "delay_graph", "delay_graph_fine",
+    "voltage_along_line", "voltage_histogram", "substation_power", "substation_currents", "substation_loads", "load_duration",
+    "energy_flow", "delays_by_cause", "lost_time", "rail_potential", "rail_potential_time",
+    "utilisation", "device_load_duration", "sharing", "demand", "useful_voltage_zones", "curves", TRAIN_FIGURES,
+    "envelope_voltage", "envelope_rails", "outage_voltages", "outage_delays", "worst_utilisation", "outages_by_km",
+    "sweep_curves", "sweep_maps", "sweep_differences", "sweep_scatter", "compare_voltage", "compare_substations",
+)  # fmt: skip
+"""Names of all figures but those of measurements, which are called by their series, to tell a misspelt one of a template.
+
+Figures of a train are called ``trains/ID``; pages and members of a group have their name going on behind ``_``.
+"""
+
 ShortText = Annotated[Text, Field(max_length=300)]
+
+
+def _written_date(text: str) -> str:
+    # A date is written as the office writes it, in any language; what has no year is none.
+    numbers = re.fullmatch(r"(\d{4})-(\d\d?)-(\d\d?)", text.strip())
+    try:
+        known = bool(re.search(r"(?<!\d)\d{4}(?!\d)", text)) if numbers is None else bool(date(*map(int, numbers.groups())))
+    except ValueError:
+        known = False
+    if text and not known:
+        raise PydanticCustomError("date", "this is no date with its year, such as 2026-11-22 or 22 November 2026")
+    return text
 
 
 class Document(Declaration):
@@ -42,7 +73,9 @@ class Document(Declaration):
     client: ShortText = Field(default="", description="Who it is for.")
     number: ShortText = Field(default="", description="Number of the document.")
     revision: ShortText = Field(default="", description="Revision of the document.")
-    date: ShortText = Field(default="", description="Date of the document as it is to be written; left out: the day of writing.")
+    date: Annotated[ShortText, AfterValidator(_written_date)] = Field(
+        default="", description="Date of the document as it is to be written, with its year; left out: the day of writing."
+    )
     made_by: ShortText = Field(default="", description="Who made it.")
     checked_by: ShortText = Field(default="", description="Who checked it.")
     approved_by: ShortText = Field(default="", description="Who approved it.")
@@ -54,7 +87,9 @@ class ReportFigures(Declaration):
     formats: Annotated[tuple[FigureFormat, ...], Field(min_length=1)] = Field(
         default=("png",), description="Kinds of files; each figure is written as each of them."
     )
-    names: tuple[Text, ...] | None = Field(default=None, description="Names of the figures to draw; left out: all.")
+    names: tuple[Text, ...] | None = Field(
+        default=None, description="Names of the figures to draw; left out: all.", examples=[list(FIGURES)]
+    )
 
 
 class Report(Declaration):
@@ -72,8 +107,10 @@ class Report(Declaration):
     )
     document: Document = Field(default=Document(), description="What stands on the cover beside the results.")
     assumptions: tuple[Text, ...] = Field(default=(), description="Assumptions of the study, for the sheet of assumptions.")
-    sheets: tuple[Text, ...] | None = Field(
-        default=None, description="Sheets of the workbook in their order, by name; left out: all in the usual order."
+    sheets: Annotated[tuple[Text, ...], Field(min_length=1)] | None = Field(
+        default=None,
+        description="Sheets of the workbook in their order, by name; left out: all in the usual order.",
+        examples=[list(SHEETS)],
     )
     leave_out: tuple[Text, ...] = Field(default=(), description="Sheets that are left out, by name.")
     figures: ReportFigures = Field(default=ReportFigures(), description="Which figures are drawn, and how.")
