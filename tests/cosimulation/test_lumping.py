@@ -38,3 +38,12 @@ def test_lumping_knows_neither_the_rails_nor_the_currents_of_the_other_track():
 
 def test_without_trains_there_is_nothing_to_compare():
     assert simulate(couple(end_s=10.0)).run["lumping"] == {}
+
+
+def test_names_of_trains_and_loads_may_be_as_long_as_names_may_be():
+    """A train and a load with 300 characters and the same name: taps of their own, no identifier that is too long."""
+    name = "x" * 300
+    load = {"id": name, "track": "2", "km": 5.0, "current_a": 100.0}
+    told = simulate(couple(run(name), end_s=60.0, loads=[load])).run["lumping"]
+    assert told["train"] == name
+    assert told["lumped_voltage_v"] != told["voltage_v"]

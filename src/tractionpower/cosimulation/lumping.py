@@ -39,7 +39,7 @@ class WorstStep:
         self._from_s = scenario.clock.counts_from_s
         self._lowest_v = np.inf
         self._loads: tuple[Load, ...] = ()
-        self._train = ""
+        self._train, self._tap = "", ""
         self._time_s = np.nan
         self._supply: Supply | None = None
 
@@ -51,7 +51,8 @@ class WorstStep:
             return
         worst = int(volts.argmin())
         self._lowest_v, self._supply = float(volts[worst]), supply.supply
-        self._train, self._time_s = self._names[rows.trains["train"][worst]], float(rows.trains["time_s"][worst])
+        number = rows.trains["train"][worst]
+        self._train, self._tap, self._time_s = self._names[number], _tap_of(number), float(rows.trains["time_s"][worst])
         ends = np.cumsum(rows.steps["trains"])
         step = int(np.searchsorted(ends, worst, side="right"))
         here = slice(int(ends[step] - rows.steps["trains"][step]), int(ends[step]))
@@ -62,10 +63,10 @@ class WorstStep:
     ) -> Iterator[Load]:
         """Yield trains and loads as taps of the currents that they took."""
         for row, track, km in zip(trains, placed.track[here], placed.km[here], strict=True):
-            name = f"train {self._names[row['train']]}"
-            yield Load(id=name, track=self._tracks[track], km=float(km), current_a=float(row["current_a"]), limits="none")
-        for load, ampere in zip(supply.loads, load_a.tolist(), strict=True):
-            yield Load(id=f"load {load.id}", track=load.track, km=load.km, current_a=ampere, limits="none")
+            ampere = float(row["current_a"])
+            yield Load(id=_tap_of(row["train"]), track=self._tracks[track], km=float(km), current_a=ampere, limits="none")
+        for number, (load, ampere) in enumerate(zip(supply.loads, load_a.tolist(), strict=True)):
+            yield Load(id=f"load {number}", track=load.track, km=load.km, current_a=ampere, limits="none")
 
     def compare(self) -> dict[str, Any]:
         """Return the lowest voltage with rails of their own and lumped into the contact lines, for ``run.json``."""
@@ -75,14 +76,13 @@ class WorstStep:
         own = self._supply.model_copy(update={"loads": self._loads})
         lumped = lump_rails(own, scenario.line, scenario.conductors)
         volts = [self._solve(supply) for supply in (own, lumped)]
-        name = f"train {self._train}"
         if volts[0] is None or volts[1] is None:
             return {}
         return {
             "train": self._train,
             "time": format_time(self._time_s),
-            "voltage_v": volts[0][name],
-            "lumped_voltage_v": volts[1][name],
+            "voltage_v": volts[0][self._tap],
+            "lumped_voltage_v": volts[1][self._tap],
             "largest_difference_v": max((abs(volts[1][k] - volts[0][k]) for k in volts[0]), default=0.0),
         }
 
@@ -95,6 +95,11 @@ class WorstStep:
         status, *_ = solve(tables.network, work, False)
         volts = work.ports["u"][tables.load_port].tolist()
         return dict(zip((load.id for load in tables.loads), volts, strict=True)) if status == CONVERGED else None
+
+
+def _tap_of(train: int) -> str:
+    """Return the identifier of a train's tap, by its number: with a word before it a long name would be too long for one."""
+    return f"train {train}"
 
 
 def lump_rails(supply: Supply, line: Line, conductors: Sequence[Conductor]) -> Supply:
