@@ -43,7 +43,7 @@ def test_two_runs_side_by_side(capsys):
     own = rows[(rows["figure"] == "energy_kwh") & (rows["place"] == "substation A")].set_index("folder")
     assert shown["energy", "substation A"]["base"] == pytest.approx(own.loc["base", "value"])
     assert shown["energy", "substation A"]["weaker less base"] == pytest.approx(own.loc["weaker", "difference"])
-    assert "supply.substations[A].internal_resistance_ohm: 0.12 -> 0.3" in texts(book["Cover"])
+    assert "substation A: internal resistance [Ω]: 0.12 → 0.3" in texts(book["Cover"])
     (folder / "compare.xlsx").unlink()
     assert main(["report", str(folder)]) == 0
     assert (folder / "compare.xlsx").is_file()

@@ -24,6 +24,13 @@ MOST_NOTED = 50
 """Differences of inputs that ``run.json`` names for each folder; table ``compare_inputs`` has all."""
 
 
+HOW = (
+    "start_s", "end_s", "step_s", "coupling", "coupling_voltage_v", "steps", "flagged_steps", "worst_residual_a",
+    "residual_limit_a", "wall_seconds", "cases",
+)  # fmt: skip
+"""What ``run.json`` repeats of each folder: how it was computed, and how well."""
+
+
 @dataclass(frozen=True)
 class Comparison:
     """Folders compared.
@@ -73,6 +80,7 @@ class Comparison:
             "compare": {
                 "base": base.name,
                 "folders": [self._said_of(variant) for variant in self.variants],
+                "definitions": self._definitions(),
                 "notes": list(self.notes),
             },
         }
@@ -88,12 +96,23 @@ class Comparison:
         told = "".join(f"{variant.name}\0{variant.results.run.get('input_hash')}\0" for variant in self.variants)
         return hashlib.sha256(told.encode()).hexdigest()
 
+    def _definitions(self) -> dict[str, str]:
+        """Return how each figure is computed, by the words of the first folder that tells it."""
+        told: dict[str, str] = {}
+        for variant in self.variants:
+            for figure in variant.results.key_figures:
+                told.setdefault(figure["name"], str(figure.get("definition") or ""))
+        known = {row["figure"] for row in self.figures}
+        return {name: words for name, words in told.items() if name in known and words}
+
     def _said_of(self, variant: Variant) -> dict[str, Any]:
-        inputs = self.inputs.get(variant.name)
+        inputs, run = self.inputs.get(variant.name), variant.results.run
+        ledgers = {name: bool(ledger.get("closes")) for name, ledger in (run.get("ledgers") or {}).items()}
         return {
             "name": variant.name,
             "folder": str(variant.folder),
-            **{key: variant.results.run.get(key) for key in ("study", "kind", "status", "input_hash")},
+            **{key: run.get(key) for key in ("study", "kind", "status", "input_hash")},
+            "run": {key: run[key] for key in HOW if run.get(key) is not None} | {"ledgers_close": ledgers},
             "inputs": None if inputs is None else [str(item) for item in inputs[:MOST_NOTED]],
             "inputs_that_differ": None if inputs is None else len(inputs),
         }

@@ -94,6 +94,12 @@ def _method(facts: Facts) -> Iterator[Assumption]:
             tr("What stands here is that of the base case; every other case differs from it in what its changes tell."),
             tr("all cases"), tr("of the study"),
         )  # fmt: skip
+    if facts.run.get("kind") == "compare":
+        yield Assumption(
+            tr("What stands here is that of the base folder; the others differ from it in the inputs of sheet {sheet}.",
+               sheet=tr("Inputs that differ")),
+            tr("all folders"), tr("of the comparison"),
+        )  # fmt: skip
     if not scenario.runs:
         yield Assumption(tr("A network calculation without trains: fixed loads alone take current."), network, tr("of the study"))
     elif facts.run.get("coupling", scenario.coupling) == "full":
@@ -138,6 +144,8 @@ def _method(facts: Facts) -> Iterator[Assumption]:
 def _limits(facts: Facts) -> Iterator[Assumption]:
     """Yield the limits that verdicts or results rest on and nobody has verified, then how they are applied."""
     used = {str(verdict["limit"]) for verdict in facts.verdicts}
+    compared = facts.table("compare_verdicts")
+    used |= set(compared["limit"].astype(str)) if len(compared) else set()
     told = {row["limit"] for row in (facts.run.get("return_circuit") or {}).get("touch_voltage", ())}
     families: dict[tuple[str, str, str], list[Limit]] = {}
     for limit in used_limits(facts):

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tractionpower.model.quantity import unit_of
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.page import Column, heading_of
 from tractionpower.results.columns import TABLES
+from tractionpower.studies.sweep.differences import FIGURES
 
 _FIGURES = (
     Column("figure", widest=46),
@@ -36,6 +38,7 @@ OF = {
     "earthing ": mark("each earthing"),
     "voltage-limiting device ": mark("each voltage-limiting device"),
     "supply point ": mark("each supply point"),
+    "case ": mark("each case"),
 }
 """What a figure is told of, by how its place begins."""
 
@@ -92,15 +95,34 @@ def _figures(book: Book) -> Iterator[tuple[str, ...]]:
         key = (figure["name"], figure.get("definition", ""))
         places.setdefault(key, []).append(figure.get("place") or "")
         units[key] = figure.get("unit", "")
+    for name, definition, place in _of_many(book):
+        places.setdefault((name, definition), []).append(place)
+        units[name, definition] = unit_of(name)
     for (name, definition), where in places.items():
         of = ", ".join(tr(each) for each in _told_of(name, where))
         heading = heading_of(name).split(" [")[0]
         yield heading, units[name, definition], of, recorded(definition), _source(name), name
 
 
+def _of_many(book: Book) -> Iterator[tuple[str, str, str]]:
+    """Yield name, definition and place of the figures of a comparison, and of those of cases."""
+    results, compared = book.facts.results, book.facts.run.get("compare") or {}
+    told: dict[str, str] = compared.get("definitions", {})
+    meanings = {column.quantity.name: column.quantity.meaning for column in TABLES["cases"] if column.quantity.name in FIGURES}
+    if compared and "compare" in results.tables:
+        rows = results.table("compare", ("figure", "place")).astype(str).drop_duplicates()
+        for name, place in rows.itertuples(index=False):
+            words = meanings.get(name, "") if place.startswith("case ") else told.get(name, "")
+            if words:
+                yield name, words, place
+    if "cases" in results.tables and not results.key_figures:
+        rows = results.table("cases")
+        yield from ((name, words, "case ") for name, words in meanings.items() if rows[name].notna().any())
+
+
 def _told_of(name: str, places: list[str]) -> list[str]:
     """Return what a figure with these places is told of."""
-    if name.startswith(OF_RUN):
+    if name.startswith(OF_RUN) and not all(place.startswith("case ") for place in places):
         return [WORST]
     found = (next((words for begin, words in OF.items() if place.startswith(begin)), RUN) for place in places)
     return list(dict.fromkeys(found))

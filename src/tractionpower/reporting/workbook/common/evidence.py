@@ -88,6 +88,18 @@ _SUMS = (
     Column("judged by the program", widest=20),
 )
 _WHAT = (Column("what", widest=_WIDEST), Column("value", "general"), Column("unit", "beside"))
+_FOLDERS = (
+    Column("folder", widest=_WIDEST),
+    Column("study", "beside", widest=24),
+    Column("status", "beside", widest=12),
+    Column("step [s]", "general"),
+    Column("steps", "0"),
+    Column("cases", "0"),
+    Column("flagged steps, or cases", "0"),
+    Column("worst residual [A]", "exponent"),
+    Column("ledgers", "beside", widest=16),
+    Column("input hash", "beside", widest=_WIDEST),
+)
 _STEPS = (
     Column("flagged spell", widest=_WIDEST),
     Column("begins", "time"),
@@ -109,6 +121,7 @@ def add(book: Book) -> None:
     _ledgers(page, facts)
     _flagged(page, facts)
     _cases(page, facts)
+    _folders(page, facts)
     _made_with(page, facts)
     _files(page, facts)
 
@@ -271,6 +284,28 @@ def _cases(page: Page, facts: Facts) -> None:
     page.section("Cases")
     page.note("Each case is a run of its own; residuals and ledgers of a case decide whether it is complete or flagged.")
     page.table(_WHAT, [(tr(told), counts[name], "") for name, told in words.items() if name in counts])
+
+
+def _folders(page: Page, facts: Facts) -> None:
+    """Tell of the folders of a comparison how they were computed, and how well."""
+    folders = (facts.run.get("compare") or {}).get("folders")
+    if not folders:
+        return
+    page.section("Folders that are compared")
+    page.note("Evidence of each stands in its own workbook; this is what it comes to.")
+    page.table(_FOLDERS, [_folder(entry) for entry in folders])
+
+
+def _folder(entry: dict[str, Any]) -> tuple[Any, ...]:
+    run = entry.get("run") or {}
+    ledgers, cases = run.get("ledgers_close") or {}, run.get("cases") or {}
+    closes = tr(CLOSES) if all(ledgers.values()) else tr(OPEN)
+    return (
+        f"{entry['name']}: {entry['folder']}", str(entry["study"]), tr(str(entry["status"])), run.get("step_s"),
+        run.get("steps"), cases.get("all") if isinstance(cases, dict) else None,
+        run.get("flagged_steps", cases.get("flagged") if isinstance(cases, dict) else None), run.get("worst_residual_a"),
+        closes if ledgers else "", str(entry.get("input_hash") or ""),
+    )  # fmt: skip
 
 
 def _made_with(page: Page, facts: Facts) -> None:

@@ -69,7 +69,8 @@ def _equipment(facts: Facts) -> Iterator[Row]:
         f"{told} {tr('Tap changers, flicker and unbalance are left out.')}",
         tr("Where substations share a weak grid, their voltages sag together more than here."),
     )
-    if facts.run.get("kind") in ("size", "contingency", "sweep"):
+    folders = (facts.run.get("compare") or {}).get("folders", ())
+    if {facts.run.get("kind"), *(entry["kind"] for entry in folders)} & {"size", "contingency", "sweep"}:
         yield (
             tr("Temperatures"),
             tr("Temperatures over time of transformers, rectifiers, cables and wires: resistances do not follow them."),

@@ -5,23 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from openpyxl.formatting.rule import CellIsRule
 from openpyxl.styles import Font
 
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.texts import mark, recorded, tr, trn
-from tractionpower.reporting.workbook.common import acceptance
-from tractionpower.reporting.workbook.common.cover import Said, fill_in
+from tractionpower.reporting.facts.input_words import input_in_words, value_in_words
+from tractionpower.reporting.texts import mark, recorded, tr
+from tractionpower.reporting.workbook.common import acceptance, assumptions, definitions, evidence, not_covered
+from tractionpower.reporting.workbook.common.cover import fill_in
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column, heading_of
 from tractionpower.reporting.workbook.variants.compare_charts import Sheets, add_charts
+from tractionpower.reporting.workbook.variants.compare_cover import colour_verdicts, head, notes, verdicts
 from tractionpower.reporting.workbook.variants.compare_verdicts import add_verdicts
 from tractionpower.results.results import Results
+from tractionpower.studies.sweep.cases import number_of
 
 SHEETS = (
     (mark("Run"), mark("Figures of the runs as a whole"), ""),
@@ -33,17 +37,13 @@ SHEETS = (
 )
 """Sheets of figures: name, title, what their places begin with; the last takes all others."""
 
-KINDS = {
-    "contingency": mark("outages"), "sweep": mark("variants"), "size": mark("ratings"), "feasibility": mark("timetable judged"),
-}  # fmt: skip
-
 GREAT_PERCENT = 5.0
 """Differences that are greater than this are bold [%]."""
 
 
 def build(results: Results, scenario: Scenario, report: Report) -> Book:
     """Return the workbook; a sheet that would be empty is left out."""
-    book = Book(Facts(results, scenario), report)
+    book = Book(_facts(results, scenario), report)
     folders = [str(entry["name"]) for entry in results.run["compare"]["folders"]]
     front = book.page("Cover", shorten(tr("{study}: comparison", study=book.facts.study), TITLE_LENGTH))
     add_verdicts(book, folders)
@@ -56,12 +56,34 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
         is_own = ~rows["place"].str.startswith(begins) & (rows["place"] != "") if prefix is None else rows["place"] == ""
         own = rows[rows["place"].str.startswith(prefix) if prefix else is_own]
         if len(own):
-            _figures(book, (name, title), own, folders, sheets)
+            _figures(book, (name, title), along_line(own, prefix, scenario), folders, sheets)
     add_charts(book, folders, sheets)
-    acceptance.add(book)
-    fill_in(book, front, (_head, _trust))
+    for add in (assumptions.add, definitions.add, not_covered.add, evidence.add, acceptance.add):
+        add(book)
+    fill_in(book, front, (head, verdicts, notes))
+    colour_verdicts(book, front)
     book.finish()
     return book
+
+
+def along_line(rows: pd.DataFrame, prefix: str | None, scenario: Scenario) -> pd.DataFrame:
+    """Return rows with the substations, and what belongs to one, in their order along the line."""
+    if prefix not in ("substation ", None):
+        return rows  # zones are in that order, trains and cases have none
+    supply = scenario.supply
+    stations = [(one.km, one.id) for one in supply.substations] + [(one.km, one.id) for one in supply.section_cabins]
+    order = {name: number for number, (_, name) in enumerate(sorted(stations))}
+
+    kinds: dict[str, int] = {}
+
+    def key(place: str) -> tuple[int, int]:
+        kind, _, name = place.partition(" ")
+        own = [each for each in order if name == each or name.startswith(f"{each} ")]  # "A" begins "A 1", which may be one, too
+        return kinds.setdefault(kind, len(kinds)), order[max(own, key=len)] if own else len(order)
+
+    places = {place: key(place) for place in rows["place"].unique()}
+    ranks = {found: number for number, found in enumerate(sorted(set(places.values())))}
+    return rows.iloc[np.argsort([ranks[places[place]] for place in rows["place"]], kind="stable")]
 
 
 def _figures(book: Book, names: tuple[str, str], rows: pd.DataFrame, folders: Sequence[str], sheets: Sheets) -> None:
@@ -132,37 +154,35 @@ def _inputs(book: Book, folders: Sequence[str]) -> None:
     if rows.empty:
         return
     page = book.page("Inputs that differ", shorten(tr("Inputs that differ from those of {base}", base=folders[0]), TITLE_LENGTH))
-    page.note("Paths are those of --set: `run STUDY --set PATH=VALUE` makes the difference. An empty cell: it is not there.")
-    columns = (Column("folder", widest=24), Column("path", widest=64), Column(folders[0], "any", 36), Column("value", "any", 36))
-    page.table(columns, rows[["folder", "path", "base", "value"]].itertuples(index=False), frozen=True)
+    page.note(
+        "Told in words; an empty cell: it is not there. With its path, `run STUDY --set PATH=VALUE` makes a difference again;"
+        " table compare_inputs has the values as that takes them."
+    )
+    columns = (
+        Column("folder", widest=18), Column("input", widest=40), Column(folders[0], "any", 48),
+        Column("value in the folder", "any", 48), Column("path", "beside", 40),
+    )  # fmt: skip
+    told = rows[["folder", "path", "base", "value"]].astype(str).itertuples(index=False)
+    lines = (
+        (folder, input_in_words(path), _value(base), _value(value), path)
+        for folder, path, base, value in told
+    )  # fmt: skip
+    page.table(columns, lines, frozen=True)
 
 
-def _head(facts: Facts) -> Iterator[Said]:
-    told = facts.run["compare"]
-    for entry in told["folders"]:
-        name = tr("{folder} (the base)", folder=entry["name"]) if entry["name"] == told["base"] else str(entry["name"])
-        kind, status = tr(KINDS.get(entry["kind"] or "", "run")), tr(entry["status"])
-        words = tr(
-            "{folder}: {kind} of study {study}, {status}", folder=entry["folder"], kind=kind, study=entry["study"], status=status
-        )
-        yield name, words, "wrapped"
-        if entry["inputs"]:
-            more = entry["inputs_that_differ"] - len(entry["inputs"])
-            shown = [*entry["inputs"]]
-            if more > 0:
-                shown.append(tr("and {count} more, see sheet {sheet}", count=more, sheet=tr("Inputs that differ")))
-            yield tr("inputs that differ"), "\n".join(shown), "neutral"
+def _value(text: str) -> Any:
+    """Return what a cell shows for the value of an input: a number as it is, all else in words."""
+    number = number_of(text) if text else None
+    return recorded(value_in_words(text)) if number is None else number
 
 
-def _trust(facts: Facts) -> Iterator[Said]:
-    rows = facts.table("compare_verdicts")
-    for folder, own in rows.groupby("folder", sort=False, observed=True) if len(rows) else ():
-        violated = own[own["met"] == "no"]
-        label = tr("Verdict, {folder}", folder=folder)
-        if len(violated):
-            names = ", ".join(recorded(str(name)) for name in violated["figure"])
-            yield label, tr("{n} of {all} limits violated: {names}", n=len(violated), all=len(own), names=names), "bad"
-        else:
-            yield label, trn("{count} limit is met or open", "All {count} limits are met or open", len(own)), "good"
-    for note in facts.run["compare"]["notes"]:
-        yield tr("Note"), recorded(str(note)), "doubt"
+def _facts(results: Results, scenario: Scenario) -> Facts:
+    """Return the facts of a comparison, with what the sheets ask of the run that the base is."""
+    facts = Facts(results, scenario)
+    base = next(entry for entry in results.run["compare"]["folders"] if entry["name"] == results.run["compare"]["base"])
+    told = dict(base.get("run") or {})
+    figures = results.table("compare")["figure"].astype(str)
+    if figures.str.contains("rail_potential").any():
+        told["return_circuit"] = {"touch_voltage": []}
+    facts.run = told | results.run
+    return facts

@@ -22,11 +22,17 @@ GROUPS: tuple[tuple[str, str, tuple[str, ...], str | None], ...] = (
     (mark("Mean useful voltage"), "V", ("mean_useful_voltage_current_weighted_v",), "zone "),
     (mark("Energy"), "kWh", ("source_energy_kwh", "train_energy_kwh", "regulation_energy_kwh", "line_loss_kwh"), ""),
     (mark("Energy of the substations"), "kWh", ("energy_kwh",), "substation "),
-    (mark("Highest power of the substations"), "kW", ("highest_mean_power_15_min_kw", "highest_power_kw"), "substation "),
+    (
+        mark("Highest mean power of the substations over a quarter of an hour"),
+        "kW",
+        ("highest_mean_power_15_min_kw",),
+        "substation ",
+    ),
+    (mark("Highest power of the substations in a step"), "kW", ("highest_power_kw",), "substation "),
     (mark("Highest current of the substations"), "A", ("highest_current_a",), "substation "),
     (mark("Utilisation of devices"), "%", ("utilisation_percent",), None),
 )
-"""Charts: title, unit, figures, of which the first that there is where the place is told, and how places begin."""
+"""Charts: title, unit, figures, and how places begin; of a figure by place each chart has one."""
 
 MOST_BARS = 24
 PROFILE_ROWS = 4000
@@ -79,10 +85,7 @@ def _groups(sheets: Sheets) -> list[tuple[str, str, list[Key]]]:
     found = []
     for title, unit, figures, begin in GROUPS:
         own = [(name, place) for name, place in sheets.rows if name in figures and (begin is None or place.startswith(begin))]
-        if begin:
-            first = next((name for name in figures if any(key[0] == name for key in own)), "")
-            own = [key for key in own if key[0] == first]
-        elif begin == "":
+        if begin == "":
             own = [key for key in own if not key[1]]
         kept = [key for key in own if any(isinstance(value, float) for value in sheets.rows[key][2])]
         found.append((title, unit, kept[:MOST_BARS]))
