@@ -1,8 +1,11 @@
 """The sheets of a judged timetable, and what the cover says of it."""
 
+import shutil
+
 import pytest
 from fake_feasibility import REMEDIES, judged
 from fake_results import make_case
+from office import recalculated
 from openpyxl import load_workbook
 
 from tractionpower.reporting.workbook import write_workbook
@@ -145,3 +148,29 @@ def test_delays_by_cause_are_stacked_for_late_trains(book):
     assert (chart.grouping, chart.type, len(chart.series)) == ("stacked", "bar", 2)
     sums = {row[0]: row[1] for row in sheet.iter_rows(max_col=2, values_only=True)}
     assert (sums["low voltage"], sums["dwell at stops"], sums["all"]) == (70.0, 5.0, 75.0)
+
+
+@pytest.mark.filterwarnings("ignore:.*xtension is not supported:UserWarning")  # LibreOffice writes one
+@pytest.mark.skipif(shutil.which("soffice") is None, reason="LibreOffice is not installed")
+def test_a_tolerance_that_lets_a_late_train_pass_is_told_with_the_reserve(tmp_path):
+    results, scenario = make_case()
+    file = write_workbook(judged(results, scenario, LATE), scenario, tmp_path / "report.xlsx")
+    before = load_workbook(file, data_only=True)["Feasibility"]
+    label = {row[0].value: row for row in before.iter_rows(max_row=12, max_col=5) if row[0].value}
+    least = label["least reserve left [s]"][3].value
+    tolerance = label["tolerance [s]"][3].value
+    assert label["least reserve left, tolerance included [s]"][3].value == pytest.approx(least + tolerance)
+    assert least < 0.0
+    assert label["least reserve left [s]"][4].value == "negative: so much is missing"
+
+    book = load_workbook(file)
+    sheet, cell = next(iter(book.defined_names["limit_tolerance_s"].destinations))
+    book[sheet][cell.replace("$", "")] = 200.0
+    book.save(tmp_path / "edited.xlsx")
+    (again,) = recalculated([tmp_path / "edited.xlsx"])
+    after = load_workbook(again, data_only=True)["Feasibility"]
+    told = {row[0].value: row for row in after.iter_rows(max_row=12, max_col=5) if row[0].value}
+    assert told["least reserve left [s]"][4].value == "negative: missing, but within the tolerance"
+    assert told["least reserve left, tolerance included [s]"][3].value == pytest.approx(least + 200.0)
+    headline = next(text for text in told if str(text).startswith("Feasible"))
+    assert headline.endswith("s are missing at the tightest place, which is within the tolerance of 200 s")

@@ -62,6 +62,7 @@ def test_verdicts_side_by_side_follow_the_limits_of_the_acceptance_sheet(compare
     assert len(read_table(live["Acceptance"])) == len(told)
 
 
+@pytest.mark.filterwarnings("ignore:.*xtension is not supported:UserWarning")  # LibreOffice writes one
 @pytest.mark.skipif(shutil.which("soffice") is None, reason="LibreOffice is not installed")
 def test_the_verdict_on_a_folder_follows_a_limit_that_is_edited(compared, tmp_path):
     live = load_workbook(compared[1])

@@ -16,6 +16,7 @@ from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Column, Page
+from tractionpower.reporting.workbook.frame.rules import Rule
 
 VERDICT, LEFT, LATE = "verdict", "reserve left [s]", "late at worst [s]"
 
@@ -73,14 +74,14 @@ def add(book: Book) -> None:
     )
     trains = _ordered(told["trains"], book)
     top = page.next
-    page.next += 5
+    page.next += 6
     tolerance = float(told["tolerance_s"])
     block = page.table(_COLUMNS, (_row(train, tolerance) for train in trains), frozen=True)
     book.define("feasibility_verdicts", page, block.cells("verdict"))
     book.define(LATE_RANGE, page, block.cells("late"))
     book.define("feasibility_reserves_s", page, block.cells("left"))
     _counts(book, page, top, (told, trains))
-    _colour(block)
+    _colour(book, block, tolerance)
     _tell_acceptance(book, told, trains)
 
 
@@ -90,10 +91,10 @@ def verdict_in_words(told: dict[str, Any]) -> tuple[Formula | str, str]:
     if told["verdict"] == "not judged":
         words = tr("Not judged: none of {all} trains comes to a call with a planned time within the time that counts", all=trains)
         return words, "doubt"
-    good, more = tr(_NONE_LATE, all=trains), '""'
+    good = tr(_NONE_LATE, all=trains)
+    tail, more = _reserve(told)
     words = live(_LATE_TRAINS, {"late": f"{{{COUNT}}}"}, all=trains)
     if told["verdict"] == "feasible":
-        tail, more = _reserve(told)
         shown = good + tail
     else:
         first = told.get("first")
@@ -105,15 +106,18 @@ def verdict_in_words(told: dict[str, Any]) -> tuple[Formula | str, str]:
 
 
 def _reserve(told: dict[str, Any]) -> tuple[str, str]:
-    """Return what is told of the reserve of a timetable that holds: as a text, and as a part of a formula."""
+    """Return what is told of the reserve where no train is late: as a text, and as a part of a live formula."""
     reserve = told.get("reserve_left_s")
     if reserve is None:
         words = tr(_NO_RESERVE)
-    elif reserve < 0.0:
-        words = tr(_MISSING, seconds=number(-reserve), tolerance=number(told["tolerance_s"]))
+        return words, sentence(words, {})
+    missing = live(_MISSING, {"seconds": f"ROUND(-{{{RESERVE}}},1)", "tolerance": f"{{{LIMIT}}}"})
+    left = live(_RESERVE, {"seconds": f"ROUND({{{RESERVE}}},0)"})
+    if reserve < 0.0:
+        words = tr(_MISSING, seconds=number(math.floor(-reserve * 10.0 + 0.5) / 10.0), tolerance=number(told["tolerance_s"]))
     else:
-        return tr(_RESERVE, seconds=math.floor(reserve + 0.5)), live(_RESERVE, {"seconds": f"ROUND({{{RESERVE}}},0)"})
-    return words, sentence(words, {})
+        words = tr(_RESERVE, seconds=math.floor(reserve + 0.5))
+    return words, f"IF({{{RESERVE}}}<0,{missing},{left})"
 
 
 def _banner(page: Page, text: Formula | str, style: str) -> None:
@@ -141,12 +145,25 @@ def _counts(book: Book, page: Page, row: int, told: tuple[dict[str, Any], Sequen
         (tr("tolerance [s]"), Formula(f"{{{LIMIT}}}", float(said["tolerance_s"])), "0.0", ""),
     ]
     if reserves:
-        lines.append((tr("least reserve left [s]"), Formula("MIN({feasibility_reserves_s})", min(reserves)), "0.0", RESERVE))
+        least, tolerance = min(reserves), float(said["tolerance_s"])
+        lines.append((tr("least reserve left [s]"), Formula("MIN({feasibility_reserves_s})", least), "0.0", RESERVE))
+        with_it = Formula(f"{{{RESERVE}}}+{{{LIMIT}}}", least + tolerance)
+        lines.append((tr("least reserve left, tolerance included [s]"), with_it, "0.0", ""))
     for at, (label, value, style, name) in enumerate(lines, row):
         page.put(at, 1, label, "plain")
         page.put(at, 4, value, style)
         if name:
             book.define(name, page, f"D{at}")
+        if name == RESERVE:
+            page.put(at, 5, _of_reserve(least, tolerance, is_late=bool(late)), "plain")
+
+
+def _of_reserve(least: float, tolerance: float, *, is_late: bool) -> Formula:
+    """Return what a reserve below zero means for the verdict, as a formula."""
+    within, missing = tr("negative: missing, but within the tolerance"), tr("negative: so much is missing")
+    shown = "" if least >= 0.0 else missing if is_late or least < -tolerance else within
+    text = f'IF({{{RESERVE}}}>=0,"",IF(OR({{{COUNT}}}>0,{{{RESERVE}}}<-{{{LIMIT}}}),"{missing}","{within}"))'
+    return Formula(text, shown)
 
 
 def _tell_acceptance(book: Book, told: dict[str, Any], trains: Sequence[dict[str, Any]]) -> None:
@@ -212,7 +229,7 @@ def _verdict(train: dict[str, Any], tolerance_s: float) -> Formula | str:
     return Formula(f'IF({{late}}>{{{LIMIT}}},"{tr(INFEASIBLE)}","{tr(FEASIBLE)}")', tr(word))
 
 
-def _colour(block: Block) -> None:
+def _colour(book: Book, block: Block, tolerance_s: float) -> None:
     """Let verdicts show green and red by their word, delays red, reserves amber when small and red when missing."""
     add_rule = block.sheet.conditional_formatting.add
     for word, colour in ((FEASIBLE, GREEN_FILL), (INFEASIBLE, RED_FILL), (NOT_FINISHED, RED_FILL), (NOT_JUDGED, AMBER_FILL)):
@@ -221,13 +238,12 @@ def _colour(block: Block) -> None:
     word = block.cell("verdict", block.first)
     late = FormulaRule(formula=[f'AND(ISNUMBER({first}),{word}="{tr(INFEASIBLE)}")'], fill=fill(RED_FILL))
     add_rule(block.cells(LATE), late)
-    colour_reserve(block, LEFT)
+    colour_reserve(book, block, LEFT, tolerance_s)
 
 
-def colour_reserve(block: Block, heading: str) -> None:
-    """Let a reserve show red when it is missing, amber when it is small."""
+def colour_reserve(book: Book, block: Block, heading: str, tolerance_s: float | None = None) -> None:
+    """Let a reserve show red when it is missing, by more than the tolerance if one is given, and amber when it is small."""
     area = block.cells(heading)
-    first = area.split(":")[0]
-    for limit, colour in (("-0.05", RED_FILL), (f"{TIGHT_S:g}", AMBER_FILL)):
-        rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{first}<{limit})"], stopIfTrue=True, fill=fill(colour))
-        block.sheet.conditional_formatting.add(area, rule)
+    missing, values = ("{cell}<-0.05", {}) if tolerance_s is None else (f"{{cell}}<-{{{LIMIT}}}-0.05", {LIMIT: tolerance_s})
+    book.rules.append(Rule(block.sheet, area, missing, RED_FILL, values))
+    book.rules.append(Rule(block.sheet, area, f"{{cell}}<{TIGHT_S:g}", AMBER_FILL))

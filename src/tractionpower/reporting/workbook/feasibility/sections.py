@@ -65,7 +65,7 @@ def add(book: Book) -> None:
     for key in ("left", "lost", "current"):
         book.define(f"sections_{key}_s", page, block.cells(key))
     _sums(page, top, rows)
-    colour_reserve(block, LEFT)
+    colour_reserve(book, block, LEFT)
     bar = DataBarRule(start_type="num", start_value=0, end_type="max", color=AMBER_FILL)
     block.sheet.conditional_formatting.add(block.cells(LOST), bar)
 
