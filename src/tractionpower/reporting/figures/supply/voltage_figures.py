@@ -12,6 +12,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tractionpower.model.limits import find_limit
 from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.figures.base.axes import (
@@ -59,6 +60,9 @@ MOST_CLASSES = 60
 
 MOST_LETTERS = 36
 """Letters of a place."""
+
+JUDGED, LIMIT_ROOM = ("u_min2", "u_max2"), 0.08
+"""Limits that voltages are judged by, and room beside them as a share of what the axis shows."""
 
 SAME_V = 1.0
 """A key figure this near to the lowest voltage of the profile [V] tells its place and time."""
@@ -163,7 +167,7 @@ def _finish(
     axes: Axes, data: RunData, profile: pd.DataFrame, tracks: Sequence[str], *, line: Sequence[str] = (), names: bool = True
 ) -> None:
     """Draw limits, and devices and loads of some tracks; the axis is that of all tracks of a line."""
-    axes.set_ylim(*voltage_range(float(profile["lowest_voltage_v"].min()), float(profile["highest_voltage_v"].max())))
+    axes.set_ylim(*_with_limits(data, float(profile["lowest_voltage_v"].min()), float(profile["highest_voltage_v"].max())))
     axes.set_xlim(*with_margin(*data.places.span(profile, line or tracks)))
     draw_limits(axes, data.scenario)
     name_devices(axes, data.places.devices(tracks), INCHES, names=names)
@@ -171,6 +175,13 @@ def _finish(
     if loads:
         bottom = axes.get_ylim()[0]
         axes.plot(loads, [bottom] * len(loads), "|", color=INK, markersize=10, clip_on=False, label=tr("loads"))
+
+
+def _with_limits(data: RunData, lowest: float, highest: float) -> tuple[float, float]:
+    """Return from where to where the axis shows voltages [V]: the limits that the run is judged by are always there."""
+    judged = [find_limit(data.scenario.limits, data.scenario.supply.system, name) for name in JUDGED]
+    values = [limit.value for limit in judged if limit is not None]
+    return voltage_range(min(lowest, *values), max(highest, *values), LIMIT_ROOM) if values else voltage_range(lowest, highest)
 
 
 def _mark_worst(panels: Sequence[Axes], shown: Sequence[Sequence[str]], data: RunData, profile: pd.DataFrame) -> None:

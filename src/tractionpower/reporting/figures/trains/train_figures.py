@@ -148,7 +148,7 @@ def train_figure(ride: Ride, data: RunData) -> Figure:
         for axes in grid[2]:
             draw_limits(axes, scenario, names=axes is over_time[2])
         _draw_axes(over_way, over_time, ride, data, course)
-        whole[1, 0].set_ylabel(tr("height\n[m]"), fontsize=7.5)
+        whole[1, 0].set_ylabel(tr("relative\nheight [m]"), fontsize=7.5)
         figure.align_ylabels(whole[:, 0])
         figure.suptitle(title_of(ride, data), x=0.01, ha="left")
         _draw_legend(figure, grid, ride)

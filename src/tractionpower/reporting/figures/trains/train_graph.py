@@ -42,7 +42,10 @@ MOST_NAMES = 40
 """With more trains their names are left out."""
 
 MOST_CIRCLES = 160
-"""With more planned times they are left out."""
+"""With more planned times they are dots."""
+
+DARK_GREEN = "#00684b"
+"""Colour of the names of substations, darker than that of their signs."""
 
 _SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9)  # of a train's run, where its name may stand
 
@@ -220,17 +223,20 @@ def _draw_panel(axes: Axes, panel: GraphPanel, inches: float, *, names: bool, ci
     """Draw the trains of a line into axes that are `inches` high."""
     for line in panel.lines:
         _draw(axes, line, 1.1 if names else 0.5, pale=panel.delays is not None)
-    planned = panel.planned if circles else ()
-    if planned:
-        axes.plot(*zip(*planned, strict=True), "o", markerfacecolor="white", markersize=3.5,
-                  markeredgecolor=VERMILION if panel.delays is None else INK,
-                  markeredgewidth=0.8, linestyle="", label=tr("planned (timetable)"), zorder=3)  # fmt: skip
+    if panel.planned:
+        colour = VERMILION if panel.delays is None else INK
+        style: dict[str, Any] = {"markerfacecolor": "white", "markersize": 3.5, "markeredgewidth": 0.8, "zorder": 3}
+        if not circles:  # they would hide the trains
+            style = {"markerfacecolor": colour, "markersize": 1.5, "markeredgewidth": 0.0, "zorder": 2.5}
+        axes.plot(
+            *zip(*panel.planned, strict=True), "o", markeredgecolor=colour, linestyle="", label=tr("planned (timetable)"), **style
+        )
     axes.margins(y=0.03)
     _name_stations(axes, panel.places.stations, inches)
-    _mark_devices(axes, panel.places.devices)
+    _mark_devices(axes, panel.places, inches)
     written = draw_delays(axes, panel.delays, WIDTH - NAMES, inches) if panel.delays is not None else []
     if names:
-        _name_trains(axes, panel.lines, planned, written, inches)
+        _name_trains(axes, panel.lines, panel.planned if circles else (), written, inches)
 
 
 def _draw(axes: Axes, line: TrainLine, width: float, *, pale: bool = False) -> None:
@@ -265,13 +271,22 @@ def _name_stations(axes: Axes, stations: Sequence[tuple[float, str, bool]], inch
     right.spines["right"].set_visible(False)
 
 
-def _mark_devices(axes: Axes, devices: Sequence[tuple[float, str, bool]]) -> None:
-    """Mark substations and section cabins on the left."""
+def _mark_devices(axes: Axes, places: GraphPlaces, inches: float) -> None:
+    """Mark substations and section cabins on the left, and name the substations that have room for it."""
     for substation, sign, size, label in ((True, ">", 6, tr("substation")), (False, "s", 3.5, tr("section cabin"))):
-        km = [place for place, _, kind in devices if kind == substation]
+        km = [place for place, _, kind in places.devices if kind == substation]
         if km:
             axes.plot([0.0] * len(km), km, sign, color=GREEN, markersize=size, clip_on=False, zorder=4, label=label,
                       transform=axes.get_yaxis_transform())  # fmt: skip
+    low, high = axes.get_ylim()
+    named = [(km, name) for km, name, substation in places.devices if substation]
+    style: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "fontsize": 6.5}
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.8}
+    for k in fitting([km for km, _ in named], [False] * len(named), 0.8 * LINE * (high - low) / inches):
+        km, name = named[k]
+        axes.annotate(
+            shortened(name, MOST_STATION_LETTERS), (0.0, km), (6, 0), va="center", color=DARK_GREEN, zorder=3.5, bbox=box, **style
+        )
 
 
 def _name_trains(

@@ -18,6 +18,7 @@ from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.texts.recorded import HEADINGS
 from tractionpower.reporting.workbook.frame.cells import clean, days, put, shorten
 from tractionpower.reporting.workbook.frame.formulas import Formula
+from tractionpower.reporting.workbook.frame.paper import EMPTY_WIDTH, LETTER_WIDTHS, break_before_charts
 
 if TYPE_CHECKING:
     from tractionpower.reporting.workbook.frame.book import Book
@@ -46,7 +47,7 @@ MOST_WIDE = {"a4": 245.0, "a3": 350.0}
 MOST_PRINTED, FIRST_PRINTED = 1000, 60
 """Of a table with more rows than the first, as many as the second are printed: nobody reads a hundred pages of rows."""
 
-LONG_SHEET, LONG_SCALE, LONG_WIDE = 150, 75, 180.0
+LONG_SHEET, LONG_SCALE, LONG_WIDE = 150, 65, 205.0
 """A sheet of more printed rows than the first is printed at this scale [%], if it is no wider than the last [characters]."""
 
 LINE_POINTS = 15.0
@@ -134,6 +135,8 @@ class Page:
         self._narrow: dict[int, float] = {}
         self._tables = 0
         self._last_printed: int | None = None
+        self._longest_line = 0.0
+        self._loose: list[int] = []
         self._set_up()
         self.line(self.title, "title")
         self.sheet.row_dimensions[1].height = 24.0
@@ -147,7 +150,8 @@ class Page:
 
     def line(self, text: str, style: str = "plain") -> None:
         """Write a line of text."""
-        put(self.sheet, self.next, 1, tr(text), self.styles[style])
+        shown = put(self.sheet, self.next, 1, tr(text), self.styles[style]).value
+        self._longest_line = max(self._longest_line, len(str(shown or "")) * LETTER_WIDTHS.get(style, 1.0))
         self.next += 1
 
     def note(self, text: str) -> None:
@@ -228,6 +232,10 @@ class Page:
         """Let what follows begin on a page of its own when it is printed."""
         self.sheet.row_breaks.append(Break(id=self.next - 1))
 
+    def new_page_for_chart(self) -> None:
+        """Let a chart that follows begin on a page of its own if what stands before it leaves it no room."""
+        self._loose.append(self.next)
+
     def finish(self) -> None:
         """Set the widths of the columns and the paper, when all is written."""
         sheet = self.sheet
@@ -247,9 +255,18 @@ class Page:
         for number, needed in self._needed.items():
             sheet.column_dimensions[get_column_letter(number)].width = needed + PADDING
         if self._last_printed is not None:
-            sheet.print_area = f"A1:{get_column_letter(max(self._needed))}{self._last_printed}"
+            sheet.print_area = f"A1:{get_column_letter(self._room_for_lines())}{self._last_printed}"
+        break_before_charts(sheet, self._loose, CHART_ROWS, LINE_POINTS, (paper, width))
         if self.sheet.freeze_panes is None:
             self.sheet.freeze_panes = "A2"
+
+    def _room_for_lines(self) -> int:
+        """Return the last column that is printed, so that titles and notes are not cut at the edge of a narrow table."""
+        last, width = max(self._needed), sum(needed + PADDING for needed in self._needed.values())
+        while width < self._longest_line:
+            last, width = last + 1, width + EMPTY_WIDTH
+            self.sheet.column_dimensions[get_column_letter(last)].width = EMPTY_WIDTH
+        return last
 
     def widen(self, *widths: float) -> None:
         """Give the first columns at least these widths [characters]."""

@@ -43,6 +43,9 @@ MOST_SUBSTATIONS = 2 * len(COLOURS)
 MOST_TICKS = 12
 ROUND_V = 200.0
 
+LIMIT_LOOKS = {"u_min2": ("dash", BOLD), "u_n": ("sysDot", NORMAL), "u_max1": ("dashDot", NORMAL), "u_max2": ("dash", NORMAL)}
+"""Dashes and width of the lines of limits."""
+
 CURVES = (("lowest", mark("track {track}, lowest"), "solid", NORMAL), ("mean", mark("track {track}, mean"), "sysDash", NORMAL),
           ("highest", mark("track {track}, highest"), "sysDot", THIN))  # fmt: skip
 
@@ -123,9 +126,9 @@ def _profile(drawn: Drawn, stretches: Sequence[Stretch], line_number: int, title
             draw(chart, drawn.blocks["profile"], _line(name, "km", key, stretch, colour, dashes, width))
     for ends in drawn.stretches.get("limits", ()):
         known = (name for name in LIMITS if limit_key(name) in drawn.blocks["limits"].keys)
-        for name, dashes in zip(known, DASHES[1:], strict=False):
+        for name in known:
             if ends.line == line_number:
-                width = BOLD if name == "u_min2" else NORMAL
+                dashes, width = LIMIT_LOOKS[name]
                 line = _line(limit_in_words(name), "km", limit_key(name), ends, INK, dashes, width)
                 draw(chart, drawn.blocks["limits"], line)
     entries = len(chart.series)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from openpyxl.utils import get_column_letter
+
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -60,6 +62,9 @@ LEDGERS: dict[str, tuple[str, tuple[Part, ...]]] = {
 """Title and parts of each ledger, as ``run.json`` names them."""
 
 
+BESIDE_CM = 19.0
+"""Width of the chart beside the ledgers."""
+
 GAP_DIGITS = 6
 """Digits of a kWh behind the point that a gap is told with."""
 
@@ -80,13 +85,15 @@ def add(book: Book) -> None:
     balance.add(page)
     drawn = None
     page.new_page()
+    beside = page.next + 1
     for name, (title, parts) in LEDGERS.items():
         if name in told:
             block = _ledger(page, title, parts, told[name])
             drawn = block if name == "electric" else drawn
     if drawn is not None:
-        page.new_page()
-        page.chart(bars(tr("Electric energy"), tr(ENERGY), drawn, WHAT, [ENERGY]))
+        chart = bars(tr("Electric energy"), tr(ENERGY), drawn, WHAT, [ENERGY])
+        chart.width = BESIDE_CM
+        page.sheet.add_chart(chart, f"{get_column_letter(len(_COLUMNS) + 2)}{beside}")  # beside the ledgers: no page of its own
 
 
 def _ledger(page: Page, title: str, parts: Sequence[Part], ledger: dict[str, Any]) -> Block:

@@ -288,5 +288,5 @@ def _chart(page: Page, main: Block, windows: Block | None) -> None:
         chart = bars(tr("Highest power of substations"), tr("power [kW]"), main, "substation", ["highest power [kW]"])
     else:
         return
-    page.new_page()
+    page.new_page_for_chart()
     page.chart(chart)

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from openpyxl.utils import get_column_letter
+
 from tractionpower.reporting.texts import tr
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Column, Page
@@ -73,14 +75,20 @@ def room_above(page: Page, lines: int) -> int:
     return page.next - lines - 1
 
 
-def write_above(page: Page, row: int, told: Sequence[Told], names: Mapping[str, str] | None = None) -> None:
-    """Write lines of a label and a value into rows that were kept free; `names` by label name the cells of values."""
-    page.widen(LABEL_WIDTH)
+def write_above(page: Page, row: int, told: Sequence[Told], names: Mapping[str, str] | None = None, *, value_in: int = 2) -> None:
+    """Write lines of a label and a value into rows that were kept free; `names` by label name the cells of values.
+
+    The label takes the columns before that of the values, so that the table below need not be wide for its sake.
+    """
+    if value_in == 2:
+        page.widen(LABEL_WIDTH)
     for label, value, style in told:
         words = tr(label)
         page.put(row, 1, words, "label")
+        if value_in > 2:
+            page.sheet.merge_cells(start_row=row, start_column=1, end_row=row, end_column=value_in - 1)
         page.sheet.row_dimensions[row].height = LINE_POINTS * math.ceil(len(words) / LABEL_WIDTH)
-        page.put(row, 2, value, style)
+        page.put(row, value_in, value, style)
         if names and label in names:
-            page.book.define(names[label], page, f"B{row}")
+            page.book.define(names[label], page, f"{get_column_letter(value_in)}{row}")
         row += 1

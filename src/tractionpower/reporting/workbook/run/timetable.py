@@ -53,13 +53,18 @@ def add(book: Book) -> None:
         )
         columns += [Column("main cause", widest=20)]
         columns += [Column(f"{tr(cause_in_words(part))} [s]", "0.0", key=part) for part in PARTS]
+    else:
+        page.note(
+            "What deviations are made of (voltage, current limit, driving, stops, other trains) tells `tractionpower feasibility`,"
+            " which also lets each train run alone: there this sheet has a column for each cause."
+        )
     calls: list[dict[Any, Any]] = frame.to_dict("records")
     rows = [_row(book, call, causes) for call in calls]
-    first = room_above(page, 9 + (len(PARTS) if causes else 0))
+    first = room_above(page, 11 + (len(PARTS) if causes else 0))
     block = page.table(columns, rows, frozen=True)
     tolerance = (book.facts.feasibility or {}).get("tolerance_s")
     late_s = max(LATE_S, float(tolerance)) if tolerance is not None else LATE_S
-    write_above(page, first, _summary(block, rows, late_s, bool(causes)), {_LATE: LATE_FROM, _VERY: VERY_LATE_FROM})
+    write_above(page, first, _summary(block, rows, late_s, bool(causes)), {_LATE: LATE_FROM, _VERY: VERY_LATE_FROM}, value_in=3)
     for name, value, colour in ((VERY_LATE_FROM, VERY_LATE_S, RED_FILL), (LATE_FROM, late_s, AMBER_FILL)):
         book.rules.append(Rule(page.sheet, block.cells("deviation"), f"{{cell}}>={{{name}}}", colour, {name: value}))
 
@@ -129,11 +134,13 @@ def _summary(block: Block, rows: Sequence[Sequence[Any]], late_s: float, causes:
         counted = f"SUMPRODUCT(ISNUMBER({planned})*(1-ISNUMBER({simulated})))"
         told.append((mark("planned calls that were not reached"), Formula(counted, missing), "0"))
     if known:
-        most = max(known)
-        worst = rows[deviations.index(most)][0]
+        most, first = max(known), min(known)
+        late, early = (str(rows[deviations.index(value)][0]) for value in (most, first))
         told += [
-            (mark("largest deviation [s]"), Formula(f"MAX({area})", most), "0.0"),
-            (mark("train of the largest deviation"), Formula(f"INDEX({trains},MATCH(MAX({area}),{area},0))", str(worst)), "any"),
+            (mark("largest lateness [s]"), Formula(f"MAX(0,MAX({area}))", max(0.0, most)), "0.0"),
+            (mark("train that is latest"), _train_of(f"MAX({area})", ">0", area, trains, late if most > 0.0 else ""), "any"),
+            (mark("largest earliness [s]"), Formula(f"MAX(0,-MIN({area}))", max(0.0, -first)), "0.0"),
+            (mark("train that is earliest"), _train_of(f"MIN({area})", "<0", area, trains, early if first < 0.0 else ""), "any"),
             (mark("mean deviation [s]"), Formula(f"AVERAGE({area})", total(known) / len(known)), "0.0"),
         ]
     if causes:
@@ -142,6 +149,11 @@ def _summary(block: Block, rows: Sequence[Sequence[Any]], late_s: float, causes:
             label = tr("sum of {cause} [s]", cause=tr(cause_in_words(part)))
             told.append((label, Formula(f"SUM({block.cells(part)})", value), "0.0"))
     return told
+
+
+def _train_of(which: str, test: str, area: str, trains: str, value: str) -> Formula:
+    """Return the train of an extreme deviation; none where nobody is late, or early."""
+    return Formula(f'IF({which}{test},INDEX({trains},MATCH({which},{area},0)),"")', value)
 
 
 def _count(area: str, name: str, least_s: float, known: Sequence[float]) -> Formula:

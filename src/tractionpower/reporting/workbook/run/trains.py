@@ -13,7 +13,7 @@ from tractionpower.movement.compile import train_of
 from tractionpower.movement.formation import form
 from tractionpower.reporting.texts import recorded, tr
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, RED_FILL
+from tractionpower.reporting.workbook.frame.cells import RED_FILL
 from tractionpower.reporting.workbook.frame.facts import STATES, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column, Page
@@ -118,8 +118,7 @@ def _journeys(book: Book) -> None:
     page = book.page("Trains", "Trains")
     page.note(
         "Times of day go beyond 24:00:00 on the next day. Late: simulated less planned time at the last timed call, negative is"
-        " early. Mean useful voltage: current-weighted, from sheet Voltages. Voltages below the limit are red, below the nominal"
-        " one amber. Net is what is taken less what is returned; sums and net are formulas."
+        " early. Mean useful voltage: current-weighted, from sheet Voltages. Voltages below the limit are red. Net is what is taken less what is returned; sums and net are formulas."
     )
     rows = [_journey(facts, train, number_) for number_, train in enumerate(facts.trains, 1)]
     block = page.table(_COLUMNS, rows, frozen=True)
@@ -131,13 +130,11 @@ def _journeys(book: Book) -> None:
 
 
 def colour_low(book: Book, page: Page, area: str, limit: str) -> None:
-    """Let voltages below a limit show red, in the cell that has it; those below the nominal voltage amber."""
-    found, nominal = book.facts.limit(limit), book.facts.limit("u_n")
+    """Let voltages below a limit show red, in the cell that has it; a voltage below the nominal one is nothing to warn of."""
+    found = book.facts.limit(limit)
     if found is not None:
         name = f"limit_{limit}"
         book.rules.append(Rule(page.sheet, area, f"{{cell}}<{{{name}}}-0.1", RED_FILL, {name: found.value}))
-    if nominal is not None:
-        book.rules.append(Rule(page.sheet, area, "{cell}<{limit_u_n}", AMBER_FILL, {"limit_u_n": nominal.value}))
 
 
 def _journey(facts: Facts, train: dict[str, Any], number_: int) -> list[Any]:

@@ -19,7 +19,7 @@ LOWEST, MEAN, HIGHEST = mark("lowest voltage [V]"), mark("mean voltage [V]"), ma
 PANTOGRAPH = "pantograph"
 WHERE = {PANTOGRAPH: mark("pantograph"), "cross_section": mark("cross-section")}
 
-LIMITS = ("u_min2", "u_n", "u_max1")
+LIMITS = ("u_min2", "u_n", "u_max1", "u_max2")
 """Limits of the voltage that are drawn."""
 
 MOST_NAMES = 40

@@ -45,8 +45,8 @@ def add(book: Book) -> None:
     page = book.page("Voltages", "Voltages of trains at the pantograph")
     page.note(
         "Means of a step. Mean useful voltages are formulas: current-weighted, sum U |I| dt over sum |I| dt; time mean, sum U dt"
-        " over the time of steps with traction effort. Red: below the limit of sheet Acceptance; amber: below the nominal"
-        " voltage. Voltages by kilometre are on sheet Voltage profile."
+        " over the time of steps with traction effort. Red: below the limit of sheet Acceptance."
+        " Voltages by kilometre are on sheet Voltage profile."
     )
     first = room_above(page, 5)
     block = page.table(_COLUMNS, rows, frozen=True)
