@@ -57,7 +57,7 @@ def test_verdicts_are_coloured_by_their_word(small):
 def test_limits_can_be_edited_and_margins_and_verdicts_ask_for_them(small):
     for row in read_table(small["Acceptance"]):
         assert isinstance(row["limit value"], int | float)
-        assert row["margin"].startswith("=IF(ISNUMBER(")
+        assert row["margin"].startswith("=IF(AND(ISNUMBER(")
         assert '"violated"' in row["verdict"]
     names = small.defined_names
     for name in ("limit_u_min2", "limit_u_max2", "limit_t_max2"):

@@ -5,12 +5,16 @@ from fake_results import make_case
 from fake_sizing import sized
 from openpyxl import load_workbook
 
+from tractionpower.model.ratings import DutyRow
 from tractionpower.reporting.workbook import write_workbook
 
 
 @pytest.fixture(scope="session")
 def study():
     results, scenario = make_case(substations=9, hours=2.0)
+    multiples = {10.0: 3.0, 60.0: 2.0, 900.0: 1.7, 7200.0: 1.5, 0.0: 1.0}
+    rows = [DutyRow(duty_class="VI", window_s=window, multiple=multiple) for window, multiple in multiples.items()]
+    scenario = scenario.model_copy(update={"duty_classes": tuple(rows)})
     return sized(results, scenario), scenario
 
 

@@ -3,10 +3,12 @@
 import pytest
 from fake_results import make_case
 from fake_sizing import sized
-from office import needs_office, recalculated
+from office import ERRORS, needs_office, recalculated
 from openpyxl import load_workbook
 from read_workbook import read_table, texts
 
+from tractionpower.model.report import Report
+from tractionpower.reporting.workbook import write_workbook
 from tractionpower.reporting.workbook.sizing.rated_cells import multiple_of, sources_of, use_of
 
 KINDS = {
@@ -50,10 +52,10 @@ def test_a_row_for_each_device_with_its_ruling_window(book, study):
 def test_utilisations_and_verdicts_are_formulas_on_their_row(formulas):
     for name in ("Units", "Substation ratings", "Feeder ratings", "Contact line"):
         for row in read_table(formulas[name]):
-            assert row["utilisation [%]"].startswith("=100*")
+            assert "100*" in row["utilisation [%]"]
             assert row["permitted in it [A]"].startswith("=")
-            assert "$B$2*(1+1E-9)" in row["holds"]
-        assert formulas[name]["B2"].value == "=limit_utilisation_percent"
+            assert "-1E-9*ABS($B$2)" in row["holds"]
+        assert formulas[name]["B2"].value == '=IF(ISNUMBER(limit_utilisation_percent),limit_utilisation_percent,"")'
 
 
 def test_kinds_are_told_with_their_worst_device(book, study):
@@ -163,9 +165,69 @@ def test_verdicts_follow_an_edited_limit(sized_file, study, tmp_path):
     assert any(text.startswith(f"{(use > limit).sum()} of {len(use)} rated devices beyond") for text in texts(edited["Ratings"]))
 
 
-def read_table_of(sheet):
+def edited(source, path, **values):
+    """Save a copy of a workbook in which named cells hold other values; None empties one. Return its path."""
+    book = load_workbook(source)
+    for name, value in values.items():
+        sheet, cell = next(book.defined_names[name].destinations)
+        book[sheet][cell] = value
+    book.save(path)
+    return path
+
+
+def shown(book, name):
+    """Return what a named cell shows."""
+    sheet, cell = next(book.defined_names[name].destinations)
+    return book[sheet][cell].value
+
+
+@needs_office
+def test_a_device_is_judged_by_the_window_that_rules_after_an_edit(study, tmp_path):
+    """Multiples and the limit are edited, emptied and overwritten; what follows is computed here from the table."""
+    results, scenario = make_case(substations=2, trains=2)
+    scenario = scenario.model_copy(update={"duty_classes": study[1].duty_classes})
+    results = sized(results, scenario)
+    sheets = ["Cover", "Acceptance", "Ratings", *KINDS.values(), "Ratings by window"]
+    source = write_workbook(results, scenario, tmp_path / "report.xlsx", Report(sheets=sheets))
+    windows = [row.window_s for row in scenario.duty_classes]
+    names = [f"duty_multiple_{k}" for k in range(1, len(windows) + 1)]
+    paths = [
+        edited(source, tmp_path / "hard.xlsx", **{names[windows.index(7200.0)]: 0.01}),
+        edited(source, tmp_path / "none.xlsx", **dict.fromkeys(names)),
+        edited(source, tmp_path / "text.xlsx", limit_utilisation_percent="what", **{names[0]: "ever"}),
+        edited(source, tmp_path / "open.xlsx", limit_utilisation_percent=None),
+    ]
+    books = [load_workbook(copy, data_only=True) for copy in recalculated(paths)]
+    for book in books:
+        cells = [cell.value for sheet in book for row in sheet.iter_rows() for cell in row]
+        assert not [value for value in cells if isinstance(value, str) and value in ERRORS]
+    table = results.table("ratings")
+    rated = table[table["utilisation_percent"].notna()]
+    use = rated["utilisation_percent"].where(
+        rated["window_s"] != 7200.0, 100.0 * rated["load_a"] / (0.01 * rated["rated_current_a"])
+    )
+    worst = rated.assign(use=use).sort_values("use", ascending=False, kind="stable").drop_duplicates("device").set_index("device")
+    assert (worst["use"] > 100.0).sum() > (table["ruling"] & (table["utilisation_percent"] > 100.0)).sum()
+    rows = [row for name in KINDS.values() for row in read_table_of(books[0][name]) if row["holds"] != "not rated"]
+    assert len(rows) == len(worst)
+    for row in rows:
+        own = worst.loc[row["device"]]
+        assert row["utilisation [%]"] == pytest.approx(own["use"], rel=1e-6)
+        assert row["holds"] == ("no" if own["use"] > 100.0 else "yes")
+        assert row["window that rules"] == "2 h"
+    assert shown(books[0], "ratings_banner").startswith(f"{(worst['use'] > 100.0).sum()} of {len(worst)} rated devices beyond")
+    for book in books[1:]:
+        holds = {row["holds"] for name in KINDS.values() for row in read_table_of(book[name])}
+        assert holds == {"not judged", "not rated"}
+        assert shown(book, "ratings_banner").startswith("Nothing is judged")
+        found = [row for row in read_table_of(book["Acceptance"], "no.") if row["group"] == "Ratings"]
+        assert found
+        assert {row["verdict"] for row in found} == {"not judged"}
+
+
+def read_table_of(sheet, first="device"):
     """Return the rows of the first table of a sheet that LibreOffice has written, by its heading in column A."""
     rows = list(sheet.iter_rows(values_only=True))
-    top = next(k for k, row in enumerate(rows) if row[0] == "device")
+    top = next(k for k, row in enumerate(rows) if row[0] == first)
     ends = (k for k in range(top + 1, len(rows)) if rows[k][0] is None)
     return [dict(zip(rows[top], row, strict=True)) for row in rows[top + 1 : next(ends, len(rows))]]

@@ -12,6 +12,7 @@ from openpyxl.formatting.rule import CellIsRule
 
 from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.texts import mark, recorded, tr
+from tractionpower.reporting.workbook.common.verdicts import Comparison, Words, same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, limit_in_words
@@ -45,8 +46,11 @@ GROUPS = {
 SERVED = mark("Service")
 """Group of what has no limit but must not be: trains that stand, loads without a voltage."""
 
-ROUNDING = "1E-9"
-"""Share of a limit by which a value may be beyond it, as the studies have it: a sum of rounded numbers."""
+LEAST_TOLERANCE = 1e-4
+"""A smaller tolerance is one of rounding: it stands in the formula and in no cell."""
+
+BY_LIMIT = Words(MET, VIOLATED, OPEN)
+"""The words of verdicts on limits."""
 
 _SENSES = {"at_least": mark("not below"), "at_most": mark("not above")}
 
@@ -187,7 +191,7 @@ def _lines(rows: Sequence[Accepted]) -> Iterator[tuple[Any, ...]]:
     cells = cell_names(rows)
     known: set[str] = set()
     for number, (row, cell) in enumerate(zip(rows, cells, strict=True), 1):
-        limit = Formula(f"{{{cell}}}", row.limit_value) if cell in known else row.limit_value
+        limit = Formula(same_as(f"{{{cell}}}"), row.limit_value) if cell in known else row.limit_value
         known.add(cell)
         yield (
             number, recorded(row.name), row.found, tr(_SENSES[row.sense]), limit, row.unit, row.tolerance or None,
@@ -211,25 +215,35 @@ def cell_names(rows: Iterable[Accepted]) -> list[str]:
     return names
 
 
+def tolerance_name(cell: str) -> str:
+    """Return the name of the cell with the tolerance of a limit, by the name of the cell with the limit.
+
+    >>> tolerance_name("limit_u_min2")
+    'tolerance_u_min2'
+    """
+    return f"tolerance_{cell.removeprefix('limit_')}"
+
+
 def _margin(row: Accepted) -> Formula | None:
     """Return how far the found value is from the limit, negative beyond it."""
     found, limit = number_in(row.found), number_in(row.limit_value)
     if limit is None:
         return None
-    text = "{found}-{limit}" if row.sense == AT_LEAST else "{limit}-{found}"
-    value = None if found is None else found - limit if row.sense == AT_LEAST else limit - found
-    return Formula(f'IF(ISNUMBER({{found}}),{text},"")', "" if value is None else value)
+    value = "" if found is None else found - limit if row.sense == AT_LEAST else limit - found
+    return Formula(_comparison(row).margin, value)
+
+
+def _comparison(row: Accepted) -> Comparison:
+    """Return what the cells of a row are held against."""
+    return Comparison("{found}", "{limit}", row.sense, "{tolerance}")
 
 
 def _verdict(row: Accepted) -> Formula | str:
     """Return the verdict as a formula; as a word where the program says other than the numbers do."""
     word = word_of(row)
-    if row.met is not None and word != _by_numbers(row):
+    if row.limit_value is None or (row.met is not None and word != _by_numbers(row)):
         return tr(word)
-    if row.limit_value is None:
-        return tr(word)
-    beyond = f"{{margin}}>=-{{tolerance}}-{ROUNDING}*ABS({{limit}})"
-    return Formula(f'IF(ISNUMBER({{margin}}),IF({beyond},"{tr(MET)}","{tr(VIOLATED)}"),"{tr(OPEN)}")', tr(word))
+    return Formula(_comparison(row).verdict_by("{margin}", BY_LIMIT), tr(word))
 
 
 def word_of(row: Accepted) -> str:
@@ -241,8 +255,7 @@ def _by_numbers(row: Accepted) -> str:
     found, limit = number_in(row.found), number_in(row.limit_value)
     if found is None or limit is None:
         return OPEN
-    margin = found - limit if row.sense == AT_LEAST else limit - found
-    return MET if margin >= -row.tolerance - float(ROUNDING) * abs(limit) else VIOLATED
+    return MET if _comparison(row).holds(found, limit, row.tolerance) else VIOLATED
 
 
 def number_in(value: float | Formula | None) -> float | None:
@@ -261,7 +274,10 @@ def _name_limits(book: Book, page: Page, block: Block, rows: Sequence[Accepted])
             page.sheet[block.cell(key, at)]._style = page.styles[style]
         is_first = cell not in known and limit is not None
         editable = is_first and not isinstance(row.limit_value, Formula)
-        page.sheet[block.cell("limit", at)]._style = page.styles[f"editable {style}" if editable else style]
+        if editable:
+            page.edit(block.cell("limit", at), style)
+        else:
+            page.sheet[block.cell("limit", at)]._style = page.styles[style]
         if is_first:
             known.add(cell)
             book.define(cell, page, block.cell("limit", at))

@@ -24,10 +24,13 @@ class Formula:
         in the column with that key, or for what has that name in the workbook: ``100*{load}/{permitted}``.
     value
         What it comes to, computed by the program: the same number, text or truth, in the unit of the cell.
+    instead
+        The formula of a workbook that has not all that `text` asks for; none without one.
     """
 
     text: str
     value: Any
+    instead: str = ""
 
     def written(self, row: Mapping[str, str], names: Names) -> str | None:
         """Return the formula as a cell holds it; None if it asks for what the workbook does not have.
@@ -39,10 +42,11 @@ class Formula:
         names
             Names of the workbook.
         """
-        places = {name: row.get(name) or (name if name in names else None) for name in _PLACE.findall(self.text)}
-        if None in places.values():
-            return None
-        return "=" + _PLACE.sub(lambda match: str(places[match.group(1)]), self.text)
+        for text in filter(None, (self.text, self.instead)):
+            places = {name: row.get(name) or (name if name in names else None) for name in _PLACE.findall(text)}
+            if None not in places.values():
+                return "=" + _PLACE.sub(lambda match, places=places: str(places[match.group(1)]), text)  # type: ignore[misc]
+        return None
 
 
 @dataclass

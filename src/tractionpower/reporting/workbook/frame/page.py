@@ -17,6 +17,7 @@ from tractionpower.model.quantity import Quantity
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.texts.recorded import HEADINGS
 from tractionpower.reporting.workbook.frame.cells import clean, days, put, shorten
+from tractionpower.reporting.workbook.frame.editing import EDITABLE, MOST, only_numbers
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.paper import EMPTY_WIDTH, LETTER_WIDTHS, break_before_charts
 
@@ -133,6 +134,7 @@ class Page:
         self.next = 1
         self._needed: dict[int, float] = {}
         self._narrow: dict[int, float] = {}
+        self._edited: dict[float, list[str]] = {}
         self._tables = 0
         self._last_printed: int | None = None
         self._longest_line = 0.0
@@ -146,7 +148,15 @@ class Page:
         if isinstance(value, Formula):
             self.book.pending.append((self, row, column, value, cells or {}))
             value = value.value
-        return put(self.sheet, row, column, value, self.styles[style]).value
+        shown = put(self.sheet, row, column, value, self.styles[style])
+        if style.startswith(EDITABLE):
+            self.edit(shown.coordinate, style.removeprefix(EDITABLE))
+        return shown.value
+
+    def edit(self, cell: str, number_format: str, least: float = -MOST) -> None:
+        """Show a cell as one that is made to be edited; only numbers can be typed there, none below the least."""
+        self.sheet[cell]._style = self.styles[f"editable {number_format}"]
+        self._edited.setdefault(least, []).append(cell)
 
     def line(self, text: str, style: str = "plain") -> None:
         """Write a line of text."""
@@ -259,6 +269,8 @@ class Page:
         break_before_charts(sheet, self._loose, CHART_ROWS, LINE_POINTS, (paper, width))
         if self.sheet.freeze_panes is None:
             self.sheet.freeze_panes = "A2"
+        for least, cells in self._edited.items():
+            only_numbers(self.sheet, cells, least)
 
     def _room_for_lines(self) -> int:
         """Return the last column that is printed, so that titles and notes are not cut at the edge of a narrow table."""

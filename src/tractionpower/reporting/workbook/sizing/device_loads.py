@@ -104,7 +104,7 @@ def _demand(book: Book) -> None:
     summary = page.table(_POINTS, (_summary(number, rows[rows["name"] == name]) for number, name in enumerate(names, 1)))
     colour_word(summary, HOLDS)
     for number, row in enumerate(range(summary.first, summary.last + 1), 1):
-        page.sheet[summary.cell("contract", row)]._style = page.styles["editable 0"]
+        page.edit(summary.cell("contract", row), "0", 0.0)
         book.define(f"contract_{number}", page, summary.cell("contract", row))
     page.new_page()
     chart_row = page.room_for_chart()

@@ -10,16 +10,19 @@ from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.texts import mark, tr
+from tractionpower.reporting.workbook.common.acceptance import OPEN
+from tractionpower.reporting.workbook.common.verdicts import Comparison, Words, same_as
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, PLAIN_FILL, RED_FILL, fill
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Page
+from tractionpower.results.verdicts import AT_MOST
 from tractionpower.studies.ratings.words import window_words
 
 HOLDS, UNRATED = mark("holds"), mark("not rated")
 YES, NO = mark("yes"), mark("no")
 
-ROUNDING = "(1+1E-9)"
-"""By which a share may be beyond what is permitted, as in `studies.ratings.use`."""
+BY_RATING = Words(YES, NO, OPEN)
+"""The words of verdicts on what devices carry and voltages do."""
 
 _PLACE = re.compile(r"\{(\w+)\}")
 _WIDE = 8
@@ -44,7 +47,7 @@ def limit_line(page: Page, label: str, limit: str, value: float, unit: str) -> s
     """
     row = page.next
     page.put(row, 1, label, "label")
-    page.put(row, 2, Formula(f"{{limit_{limit}}}", value), "editable general")
+    page.put(row, 2, Formula(same_as(f"{{limit_{limit}}}"), value), "editable general")
     page.put(row, 3, unit, "plain")
     page.next += 1
     return f"$B${row}"
@@ -68,9 +71,9 @@ def judged(text: str, word: str, recorded_word: str) -> Formula | str:
     return Formula(text, tr(word)) if word == recorded_word else tr(recorded_word)
 
 
-def at_most(key: str, limit: str, slack: str = ROUNDING) -> str:
-    """Return a formula that says whether the value in a column is not above a limit."""
-    return f'IF({{{key}}}>{limit}*{slack},"{tr(NO)}","{tr(YES)}")'
+def at_most(key: str, limit: str) -> str:
+    """Return a formula that says whether the value in a column is not above a limit; not judged where one is no number."""
+    return Comparison(f"{{{key}}}", limit, AT_MOST).verdict(BY_RATING)
 
 
 def sentence(text: str, **parts: tuple[str, object]) -> Formula:
@@ -98,7 +101,7 @@ def rounded(value: float) -> int:
     return int(math.copysign(math.floor(abs(value) + 0.5), value))
 
 
-def banner(page: Page, text: Formula | str, style: str, bad: str = "", name: str = "") -> None:
+def banner(page: Page, text: Formula | str, style: str, bad: str = "", name: str = "", doubt: str = "") -> None:
     """Write a verdict in large letters across the page.
 
     Parameters
@@ -113,6 +116,8 @@ def banner(page: Page, text: Formula | str, style: str, bad: str = "", name: str
         A formula that is true where the verdict is bad: the colour follows it.
     name
         Name of the cell, for other sheets.
+    doubt
+        A formula that is true where nothing was judged, for amber; it takes part with `bad` only.
     """
     row = page.next
     shown = page.put(row, 1, text, "big neutral" if bad else f"big {style}")
@@ -121,7 +126,8 @@ def banner(page: Page, text: Formula | str, style: str, bad: str = "", name: str
     if bad:
         area = f"A{row}:{chr(ord('A') + _WIDE - 1)}{row}"
         other = {"good": GREEN_FILL, "neutral": PLAIN_FILL}.get(style if style != "bad" else "good", AMBER_FILL)
-        for test, colour in ((bad, RED_FILL), (f"NOT({bad})", other)):
+        tests = ((bad, RED_FILL), *(((doubt, AMBER_FILL),) if doubt else ()), (f"NOT({bad})", other))
+        for test, colour in tests:
             page.sheet.conditional_formatting.add(area, FormulaRule(formula=[test], stopIfTrue=True, fill=fill(colour)))
     if name:
         page.book.define(name, page, f"A{row}")
@@ -132,9 +138,13 @@ def colour_use(block: Block, heading: str, permitted: str) -> None:
     """Let a utilisation show green, amber when little is left, red when it is beyond what is permitted, in the cell given."""
     area = block.cells(heading)
     first = area.split(":")[0]
-    tests = ((f">{permitted}*{ROUNDING}", RED_FILL), (f">{TIGHT_PERCENT / 100.0:g}*{permitted}", AMBER_FILL), (">=0", GREEN_FILL))
+    held = Comparison(first, permitted, AT_MOST)
+    tests = (
+        (held.is_passed, RED_FILL), (f"AND({held.is_judged},{first}>{TIGHT_PERCENT / 100.0:g}*N({permitted}))", AMBER_FILL),
+        (f"AND({held.is_judged},{first}>=0)", GREEN_FILL),
+    )  # fmt: skip
     for test, colour in tests:
-        rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{first}{test})"], stopIfTrue=True, fill=fill(colour))
+        rule = FormulaRule(formula=[test], stopIfTrue=True, fill=fill(colour))
         block.sheet.conditional_formatting.add(area, rule)
 
 
@@ -147,7 +157,7 @@ def colour_red(block: Block, area: str, test: str) -> None:
 
 def colour_word(block: Block, heading: str) -> None:
     """Let yes and no show green and red, what is not judged grey."""
-    for word, colour in ((YES, GREEN_FILL), (NO, RED_FILL), (UNRATED, PLAIN_FILL)):
+    for word, colour in ((YES, GREEN_FILL), (NO, RED_FILL), (UNRATED, PLAIN_FILL), (OPEN, AMBER_FILL)):
         rule = CellIsRule(operator="equal", formula=[f'"{tr(word)}"'], fill=fill(colour))
         block.sheet.conditional_formatting.add(block.cells(heading), rule)
 

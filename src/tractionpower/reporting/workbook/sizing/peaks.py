@@ -125,7 +125,7 @@ def _breakers(book: Book, places: Places) -> None:
     ordered = _in_order(rows, places)
     block = page.table(columns, _breaker_rows(ordered, levels, (limit, permitted)), frozen=True)
     for row in range(block.first, block.last + 1):
-        page.sheet[block.cell("setting", row)]._style = page.styles["editable 0"]
+        page.edit(block.cell("setting", row), "0", 0.0)
     colour_use(block, SHARE, limit)
     colour_word(block, HOLDS)
     book.define("breaker_shares", page, block.cells("share"))

@@ -12,10 +12,20 @@ import pandas as pd
 
 from tractionpower.model.ratings import DutyRow
 from tractionpower.reporting.texts import mark, tr
+from tractionpower.reporting.workbook.common.verdicts import same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column
-from tractionpower.reporting.workbook.sizing.judging import HOLDS, NO, UNRATED, YES, at_most, judged, known
+from tractionpower.reporting.workbook.sizing.judging import (
+    HOLDS,
+    NO,
+    UNRATED,
+    YES,
+    at_most,
+    judged,
+    known,
+    window_in_words,
+)
 from tractionpower.studies.ratings.use import MOST_PERCENT
 
 USE = mark("utilisation [%]")
@@ -31,6 +41,14 @@ LOADS = (
     Column("that window begins", "time", key="from"),
 )
 """Columns of a load in a window and of what is permitted in it."""
+
+_PERMITTED = 'IF(AND(ISNUMBER({rated}),ISNUMBER({multiple})),{rated}*{multiple},"")'
+_MOST = f"{MOST_PERCENT:.0f}"
+_USE = (
+    'IF(ISNUMBER({permitted}),IF({permitted}>0,MIN(100*{load}/{permitted},'
+    f'{_MOST}),IF({{load}}>0,{_MOST},0)),"")'
+)  # fmt: skip
+"""Utilisation as `use_of` has it; nothing where nothing is said to be permitted."""
 
 _NEAR = 1e-6
 """Share by which numbers of single precision may differ."""
@@ -86,13 +104,54 @@ class Judge:
         found["from"] = row["from_s"] if row["window_s"] > 0.0 else None
         if not known(row["utilisation_percent"]) or not math.isfinite(permitted):
             return found | {"multiple": None, "permitted": None, "use": None, "left": None, "holds": tr(UNRATED)}
-        use = use_of(load, permitted)
-        word = NO if use > self.permitted * (1.0 + _ROUNDING) else YES
         return found | {
             "multiple": self._multiple(row, multiple),
-            "permitted": permitted if multiple is None else Formula("{rated}*{multiple}", permitted),
-            "use": Formula("100*{load}/{permitted}", use) if 0.0 < permitted and use < MOST_PERCENT else use,
-            "left": Formula("{permitted}-{load}", permitted - load),
+            "permitted": permitted if multiple is None else Formula(_PERMITTED, permitted),
+            **self._judged(row, permitted, limit),
+        }
+
+    def worst_cells(self, windows: pd.DataFrame, first: int, limit: str) -> dict[str, Any]:
+        """Return the same of a device with several windows: of that which is used most, by formulas on sheet Ratings by window.
+
+        Parameters
+        ----------
+        windows
+            The device's rows of table ``ratings``, in the order of that sheet.
+        first
+            Number of the first of them in the table of that sheet, from 1.
+        limit
+            Address of the permitted utilisation.
+        """
+        rows = windows.to_dict("records")
+        uses = [use_of(float(row["load_a"]), permitted_of(row)) for row in rows]
+        at = uses.index(max(uses))
+        row, permitted = rows[at], permitted_of(rows[at])
+        multiple, load = multiple_of(row), float(row["load_a"])
+        area = window_span("use", first, first + len(rows) - 1)
+        kept = self._multiple(row, multiple)
+        begin = row["from_s"] if row["window_s"] > 0.0 else None
+        return {
+            "row": Formula(f"IF(COUNT({area})=0,{first},{first - 1}+MATCH(MAX({area}),{area},0))", first + at),
+            "window": Formula(_of_window("window"), window_in_words(row["window_s"])),
+            "rated": row["rated_current_a"],
+            "multiple": Formula(
+                same_as(_of_window("multiple")), "" if multiple is None else multiple,
+                kept.text if isinstance(kept, Formula) else "",
+            ),
+            "load": Formula(_of_window("load"), load),
+            "permitted": Formula(same_as(_of_window("permitted")), permitted, "" if multiple is None else _PERMITTED),
+            **self._judged(row, permitted, limit),
+            "from": Formula(same_as(_of_window("from")), begin),
+        }  # fmt: skip
+
+    def _judged(self, row: Any, permitted: float, limit: str) -> dict[str, Any]:
+        """Return utilisation, what is left and verdict, by formulas on load and permitted current of the row."""
+        load = float(row["load_a"])
+        use = use_of(load, permitted)
+        word = NO if use > self.permitted * (1.0 + _ROUNDING) else YES
+        return {
+            "use": Formula(_USE, use),
+            "left": Formula('IF(ISNUMBER({permitted}),{permitted}-{load},"")', permitted - load),
             "holds": judged(at_most("use", limit), word, str(row["met"])),
         }
 
@@ -100,7 +159,24 @@ class Judge:
         """Return the multiple, from the cell of its duty class where that has it."""
         name, window_s = str(row["duty_class"]), float(row["window_s"])
         own = {(duty.duty_class, duty.window_s): duty.multiple for duty in self.duties}.get((name, window_s))
-        return Formula(f"{{{self.duty_cell(name, window_s)}}}", multiple) if own is not None and own == multiple else multiple
+        cell = f"{{{self.duty_cell(name, window_s)}}}"
+        return Formula(same_as(cell), multiple) if own is not None and own == multiple else multiple
+
+
+def several_windows(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of table ``ratings`` of devices that are rated for several windows, as sheet Ratings by window has them."""
+    rated = rows[rows["utilisation_percent"].notna()]
+    return rated[rated.groupby("device", observed=True)["window_s"].transform("size") > 1]
+
+
+def window_span(key: str, first: int, last: int) -> str:
+    """Return cells of a column of sheet Ratings by window, from a row of its table to another, counted from 1."""
+    return f"INDEX({{windows_{key}}},{first}):INDEX({{windows_{key}}},{last})"
+
+
+def _of_window(key: str) -> str:
+    """Return the cell of a column of sheet Ratings by window in the row whose number stands in the column of rows."""
+    return f"INDEX({{windows_{key}}},{{row}})"
 
 
 def use_of(load: float, permitted: float) -> float:

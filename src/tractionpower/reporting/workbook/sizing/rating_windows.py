@@ -10,6 +10,7 @@ import pandas as pd
 from tractionpower.reporting.facts.device_words import KINDS, device_told
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column
 from tractionpower.reporting.workbook.sizing.judging import (
     HOLDS,
@@ -18,7 +19,14 @@ from tractionpower.reporting.workbook.sizing.judging import (
     limit_line,
     window_in_words,
 )
-from tractionpower.reporting.workbook.sizing.rated_cells import LOADS, USE, Judge, keyed
+from tractionpower.reporting.workbook.sizing.rated_cells import (
+    LOADS,
+    USE,
+    Judge,
+    keyed,
+    several_windows,
+    window_span,
+)
 
 RULES = mark("rules")
 
@@ -40,25 +48,38 @@ def add(book: Book, rows: pd.DataFrame) -> None:
 
 def _rated(book: Book, rows: pd.DataFrame) -> None:
     """Add a row for each window of the ratings that name more than one."""
-    rated = rows[rows["utilisation_percent"].notna()]
-    several = rated[rated.groupby("device", observed=True)["window_s"].transform("size") > 1]
+    several = several_windows(rows)
     if several.empty:
         return
     page = book.page("Ratings by window", "Ratings by window: devices that are rated for several windows")
     judge = Judge.of(book)
     limit = limit_line(page, tr("Permitted utilisation"), "utilisation_percent", judge.permitted, "%")
     page.note("The window with the highest utilisation rules. A window longer than the run is held against the whole of it.")
-    cells = (_device(row) | judge.cells(row, limit) for row in several.to_dict("records"))
-    block = page.table(_COLUMNS, (keyed(_COLUMNS, each) for each in cells), frozen=True)
+    block = page.table(_COLUMNS, _window_rows(several, judge, limit), frozen=True)
+    for key in ("window", "load", "multiple", "permitted", "use", "from"):
+        book.define(f"windows_{key}", page, block.cells(key))
     colour_use(block, USE, limit)
     colour_word(block, HOLDS)
+
+
+def _window_rows(several: pd.DataFrame, judge: Judge, limit: str) -> Iterator[list[Any]]:
+    first = 1
+    for _, own in several.groupby(several["device"].astype(str), sort=False):
+        cells = [judge.cells(row, limit) for row in own.to_dict("records")]
+        uses = [each["use"].value for each in cells]
+        area = window_span("use", first, first + len(own) - 1)
+        for number, (row, each) in enumerate(zip(own.to_dict("records"), cells, strict=True), 1):
+            word = tr(RULES) if uses.index(max(uses)) == number - 1 else ""
+            text = f'IF(ISNUMBER({{use}}),IF(MATCH(MAX({area}),{area},0)={number},"{tr(RULES)}",""),"")'
+            yield keyed(_COLUMNS, _device(row) | each | {"rules": Formula(text, word)})
+        first += len(own)
 
 
 def _device(row: dict[Any, Any]) -> dict[str, Any]:
     kind = str(row["kind"])
     return {
         "device": device_told(row["device"]), "kind": tr(KINDS.get(kind, kind)), "duty": row["duty_class"],
-        "window": window_in_words(row["window_s"]), "rules": tr(RULES) if row["ruling"] else "",
+        "window": window_in_words(row["window_s"]),
     }  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from tractionpower.model.ratings import DutyRow
 from tractionpower.reporting.facts.device_words import KINDS, device_told, kind_order
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.texts import mark, number, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import Accepted
+from tractionpower.reporting.workbook.common.acceptance import OPEN, Accepted
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -33,7 +33,7 @@ from tractionpower.reporting.workbook.sizing.judging import (
     sentence,
     window_in_words,
 )
-from tractionpower.reporting.workbook.sizing.rated_cells import Judge, permitted_of, sources_of, use_of
+from tractionpower.reporting.workbook.sizing.rated_cells import Judge, permitted_of, several_windows, sources_of, use_of
 from tractionpower.reporting.workbook.sizing.rated_devices import name_of
 from tractionpower.studies.ratings.words import KINDS as VERDICT_KINDS
 from tractionpower.studies.ratings.words import window_words
@@ -90,7 +90,7 @@ def add(book: Book) -> None:
             tight=number(TIGHT_PERCENT),
         )
     )
-    sheets = rated_devices.add(book, ruling)
+    sheets = rated_devices.add(book, ruling, several_windows(rows))
     kinds = _write_kinds(page, ruling, sheets, cell)
     end, page.next = page.next, head
     _write_banner(page, ruling, permitted, (kinds, cell))
@@ -140,7 +140,7 @@ def _said(ruling: pd.DataFrame, permitted: float, cell: str = "") -> tuple[Formu
         return sentence(tr("None of {devices} devices has a rating"), devices=(str(devices), devices)), "doubt"
     worst = rated.iloc[int(rated["utilisation_percent"].argmax())]
     beyond = int((rated["met"].astype(str) == "no").sum())
-    row = "MATCH(MAX({kinds_most}),{kinds_most},0)"
+    row, some = "MATCH(MAX({kinds_most}),{kinds_most},0)", "SUM({kinds_rated})>0"
     parts: dict[str, tuple[str, object]] = {
         "rated": ("SUM({kinds_rated})", len(rated)),
         "beyond": ("SUM({kinds_beyond})", beyond),
@@ -153,8 +153,9 @@ def _said(ruling: pd.DataFrame, permitted: float, cell: str = "") -> tuple[Formu
     bad = sentence(tr("{beyond} of {rated} rated devices beyond {permitted} %"), **parts)
     most = sentence(tr(". Most: {device}, {use} % in window: {window}"), **parts)
     more = sentence(tr("; {bare} more have no rating and are not judged") if bare else "", bare=(str(bare), bare))
-    first = f"IF(SUM({{kinds_beyond}})=0,{good.text},{bad.text})"
-    text = "&".join(part for part in (first, most.text, more.text) if part)
+    none = sentence(tr("Nothing is judged: a limit or a multiple is missing"))
+    first = f"IF(AND({some},ISNUMBER({cell})),IF(SUM({{kinds_beyond}})=0,{good.text},{bad.text}),{none.text})"
+    text = "&".join(part for part in (first, f'IF({some},{most.text},"")', more.text) if part)
     value = f"{(bad if beyond else good).value}{most.value}{more.value}"
     return Formula(text, value), "bad" if beyond else "neutral" if bare else "good"
 
@@ -164,7 +165,9 @@ def _write_banner(page: Page, ruling: pd.DataFrame, permitted: float, on: tuple[
     kinds, cell = on
     found, style = _said(ruling, permitted, cell)
     is_judged = bool(ruling["utilisation_percent"].notna().any())
-    banner(page, found, style, f"SUM({absolute_coordinate(kinds.cells('beyond'))})>0" if is_judged else "", BANNER)
+    beyond, rated = (absolute_coordinate(kinds.cells(key)) for key in ("beyond", "rated"))
+    is_open = f"NOT(AND(SUM({rated})>0,ISNUMBER({cell})))"
+    banner(page, found, style, f"SUM({beyond})>0" if is_judged else "", BANNER, doubt=is_open)
 
 
 def _write_kinds(page: Page, ruling: pd.DataFrame, sheets: dict[str, str], cell: str) -> Block:
@@ -192,15 +195,22 @@ def _kind_row(kind: str, own: pd.DataFrame, sheet: str) -> tuple[Any, ...]:
     if not rated:
         return *first, None, None, None, None, tr(UNRATED), sheet
     worst = own.iloc[int(use.fillna(-1.0).argmax())]
-    at = f"MATCH({{most}},{{{name}_use}},0)"
+    area = f"{{{name}_use}}"
     load, permitted = float(worst["load_a"]), permitted_of(worst)
     most = use_of(load, permitted)
-    holds = f'IF({{beyond}}>0,"{tr(NO)}","{tr(YES)}")'
-    return (
-        *first, Formula(f"MAX({{{name}_use}})", most), Formula(f"INDEX({{{name}_device}},{at})", device_told(worst["device"])),
-        Formula(f"INDEX({{{name}_window}},{at})", window_in_words(worst["window_s"])),
-        Formula(f"INDEX({{{name}_left}},{at})", permitted - load), Formula(holds, tr(NO if beyond else YES)), sheet,
+    holds = f'IF({{beyond}}>0,"{tr(NO)}",IF(COUNTIF({{{name}_holds}},"{tr(YES)}")>0,"{tr(YES)}","{tr(OPEN)}"))'
+    told = (
+        Formula(f'IF(ISNUMBER({{most}}),INDEX({{{name}_{key}}},MATCH({{most}},{area},0)),"")', value)
+        for key, value in (
+            ("device", device_told(worst["device"])), ("window", window_in_words(worst["window_s"])), ("left", permitted - load),
+        )
     )  # fmt: skip
+    return *first, Formula(_highest(name), most), *told, Formula(holds, tr(NO if beyond else YES)), sheet
+
+
+def _highest(name: str) -> str:
+    """Return the formula of the highest utilisation of a kind; nothing where none is known."""
+    return f'IF(COUNT({{{name}_use}})=0,"",MAX({{{name}_use}}))'
 
 
 def _duties(book: Book, page: Page) -> None:
@@ -214,7 +224,7 @@ def _duties(book: Book, page: Page) -> None:
     block = page.table(_DUTIES, cells)
     for at, row in enumerate(rows, block.first):
         cell = block.cell("multiple", at)
-        page.sheet[cell]._style = page.styles["editable 0.00"]
+        page.edit(cell, "0.00", 0.0)
         book.define(judge.duty_cell(row.duty_class, row.window_s), page, cell)
 
 
@@ -243,6 +253,6 @@ def _accepted(ruling: pd.DataFrame, permitted: float) -> Iterator[Accepted]:
         when = format_time(worst["from_s"]) if worst["window_s"] > 0.0 and known(worst["from_s"]) else ""
         yield Accepted(
             f"utilisation of {VERDICT_KINDS[str(kind)]}", LIMIT, permitted, "%", "at_most",
-            Formula(f"MAX({{{name_of(str(kind))}_use}})", most), f"{worst['device']}, {window_words(worst['window_s'])}", when,
+            Formula(_highest(name_of(str(kind))), most), f"{worst['device']}, {window_words(worst['window_s'])}", when,
             str(worst["status"]), str(worst["source"]), "Ratings",
         )  # fmt: skip

@@ -11,6 +11,7 @@ import pandas as pd
 from tractionpower.model.base import format_time
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.common.acceptance import Accepted
+from tractionpower.reporting.workbook.common.verdicts import same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -63,7 +64,7 @@ def add(book: Book) -> None:
         colour_word(block, HOLDS)
         for row, told in enumerate(every.to_dict("records"), block.first):
             if known(told["permitted_s"]):
-                page.sheet[block.cell("permitted", row)]._style = page.styles["editable 0"]
+                page.edit(block.cell("permitted", row), "0", 0.0)
                 limits[told["band"]] = block.cell("permitted", row)
         book.define("duration_longest", page, block.cells("longest"))
         book.acceptance += _accepted(book.facts, every, rows)
@@ -109,7 +110,7 @@ def _every(rows: pd.DataFrame, first: int) -> Iterator[tuple[Any, ...]]:
         beyond = Formula(f"SUM(E{begin}:E{end})", inside)
         permitted = row["permitted_s"]
         name = _LIMITS.get(row["band"])
-        limit = Formula(f"{{limit_{name}}}", permitted) if name and known(permitted) else permitted
+        limit = Formula(same_as(f"{{limit_{name}}}"), permitted) if name and known(permitted) else permitted
         yield _row(row, tr("all trains"), (share, beyond, limit))
 
 

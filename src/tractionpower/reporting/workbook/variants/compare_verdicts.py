@@ -10,15 +10,17 @@ from typing import Any
 from tractionpower.model.limits import Limit, common_limits
 from tractionpower.reporting.texts import recorded, tr
 from tractionpower.reporting.workbook.common.acceptance import (
+    BY_LIMIT,
     MET,
     OPEN,
-    ROUNDING,
     VIOLATED,
     Accepted,
     accepted_rows,
     cell_names,
     colour_words,
+    tolerance_name,
 )
+from tractionpower.reporting.workbook.common.verdicts import Comparison, same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import shorten
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts, limit_in_words
@@ -26,7 +28,7 @@ from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column
 from tractionpower.reporting.workbook.variants.compare_cover import verdict_range
 from tractionpower.results.spells import TOLERANCE_V
-from tractionpower.results.verdicts import AT_LEAST, sense_of_limit
+from tractionpower.results.verdicts import sense_of_limit
 
 WORDS = {"yes": MET, "no": VIOLATED, "": OPEN}
 
@@ -61,7 +63,8 @@ def add_verdicts(book: Book, folders: Sequence[str]) -> None:
     }
     columns = [
         Column("what is judged", widest=40, key="judged"), Column("limit", widest=16), Column("limit value", "0.0", key="limit"),
-        Column("unit"), *_folder_columns(folders), Column("status of the limit", "beside", 24),
+        Column("unit"), Column("tolerance", "general", key="tolerance"),
+        *_folder_columns(folders), Column("status of the limit", "beside", 24),
     ]  # fmt: skip
     block = page.table(columns, _lines(by_judged, folders, limits, given), frozen=True)
     book.define("verdicts_names", page, block.cells("judged"))
@@ -87,8 +90,14 @@ def _lines(
 ) -> Iterator[list[Any]]:
     for (name, limit_name, limit), found in by_judged.items():
         cell = limits.get((limit_name, limit), "")
-        value_cell = None if limit is None else Formula(f"{{{cell}}}", limit)
-        line: list[Any] = [recorded(name), limit_in_words(limit_name), value_cell, unit_of(limit_name, given)]
+        value_cell = None if limit is None else Formula(same_as(f"{{{cell}}}"), limit)
+        line: list[Any] = [
+            recorded(name),
+            limit_in_words(limit_name),
+            value_cell,
+            unit_of(limit_name, given),
+            _tolerance_cell(limit_name, cell),
+        ]
         status = next(iter(found.values()))["status"]
         for k, folder in enumerate(folders):
             row = found.get(folder)
@@ -105,13 +114,10 @@ def _verdict(limit_name: str, limit: float | None, told: tuple[float | None, str
     value, word = told
     if value is None or limit is None:
         return tr(word)
-    is_floor, slack = sense_of_limit(limit_name) == AT_LEAST, _tolerance(limit_name)
-    margin = value - limit if is_floor else limit - value
-    if word != (MET if margin >= -slack - float(ROUNDING) * abs(limit) else VIOLATED):
+    held = Comparison(f"{{found{k}}}", "{limit}", sense_of_limit(limit_name), "{tolerance}")
+    if word != (MET if held.holds(value, limit, _tolerance(limit_name)) else VIOLATED):
         return tr(word)
-    text = f"{{found{k}}}-{{limit}}" if is_floor else f"{{limit}}-{{found{k}}}"
-    allowed = f"-{slack:g}-{ROUNDING}*ABS({{limit}})" if slack else f"-{ROUNDING}*ABS({{limit}})"
-    return Formula(f'IF({text}>={allowed},"{tr(MET)}","{tr(VIOLATED)}")', tr(word))
+    return Formula(held.verdict(BY_LIMIT), tr(word))
 
 
 def _accepted(judged: Judged, folder: str, row: Mapping[str, Any], place: str, given: Mapping[str, Limit]) -> Accepted:
@@ -148,6 +154,12 @@ def unit_of(limit_name: str, given: Mapping[str, Limit] = MappingProxyType({})) 
 
 def _tolerance(limit_name: str) -> float:
     return TOLERANCE_V if limit_name.startswith("u_") else 0.0
+
+
+def _tolerance_cell(limit_name: str, cell: str) -> Formula | None:
+    """Return the tolerance of a row, from the sheet of acceptance."""
+    tolerance = _tolerance(limit_name)
+    return Formula(same_as(f"{{{tolerance_name(cell)}}}"), tolerance) if cell and tolerance else None
 
 
 def _number(value: Any) -> float | None:

@@ -11,7 +11,7 @@ from openpyxl.formatting.rule import ColorScaleRule
 
 from tractionpower.reporting.facts.sweep_data import SweepData
 from tractionpower.reporting.texts import tr
-from tractionpower.reporting.workbook.common.acceptance import MET, VIOLATED
+from tractionpower.reporting.workbook.common.acceptance import LEAST_TOLERANCE, MET, VIOLATED, tolerance_name
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL
 from tractionpower.reporting.workbook.frame.page import Block, Page
@@ -111,6 +111,14 @@ def _word(check: Check, row: Mapping[Any, Any], *, told: bool = True) -> str:
 def limit_cell(check: Check) -> str:
     """Return the place of a limit in a formula."""
     return f"{{limit_{check.limit}}}"
+
+
+def tolerances_of(check: Check) -> tuple[str, str]:
+    """Return the tolerance of a limit in a formula: its cell on the sheet of acceptance, and the number for a book without it."""
+    value = f"{check.tolerance:g}"
+    if check.tolerance < LEAST_TOLERANCE:  # one of rounding, which all verdicts have
+        return "0", "0"
+    return f"{{{tolerance_name(f'limit_{check.limit}')}}}", value
 
 
 def subject_of(row: Mapping[Any, Any]) -> str:

@@ -11,11 +11,21 @@ from openpyxl.styles import Font
 from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.facts.sweep_data import SweepData
 from tractionpower.reporting.texts import mark, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import MET, OPEN, VIOLATED, Accepted, colour_words
+from tractionpower.reporting.workbook.common.acceptance import BY_LIMIT, MET, OPEN, VIOLATED, Accepted, colour_words
+from tractionpower.reporting.workbook.common.verdicts import Comparison
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column
-from tractionpower.reporting.workbook.variants.sweep_cases import CASE, NUMBER, Cases, Cells, limit_cell, shade, subject_of
+from tractionpower.reporting.workbook.variants.sweep_cases import (
+    CASE,
+    NUMBER,
+    Cases,
+    Cells,
+    limit_cell,
+    shade,
+    subject_of,
+    tolerances_of,
+)
 from tractionpower.reporting.workbook.variants.sweep_words import (
     STATUSES,
     heading,
@@ -24,7 +34,8 @@ from tractionpower.reporting.workbook.variants.sweep_words import (
     shown_figures,
     style_of,
 )
-from tractionpower.studies.cases.judgement import ROUNDING, Check
+from tractionpower.results.verdicts import AT_LEAST, AT_MOST
+from tractionpower.studies.cases.judgement import Check
 from tractionpower.studies.sweep.cases import number_of
 from tractionpower.studies.sweep.differences import NOT_JUDGED
 
@@ -193,16 +204,14 @@ def _verdict_rows(cases: Cases, cells: Cells) -> Iterator[list[Any]]:
         shown: list[Any] = [tr(word) for word in words]
         for k, (check, word) in enumerate(zip(cases.checks, words, strict=True)):
             if word and cases.is_own(row, k):
-                shown[k] = Formula(_judged(check, cells.of(check.figure)), tr(word))
+                text, instead = (_judged(check, cells.of(check.figure), tolerance) for tolerance in tolerances_of(check))
+                shown[k] = Formula(text, tr(word), instead)
         yield [case, number, Formula(count, words.count(VIOLATED)), *shown]
 
 
-def _judged(check: Check, found: str) -> str:
+def _judged(check: Check, found: str, tolerance: str) -> str:
     """Return the formula of a verdict."""
-    limit = limit_cell(check)
-    slack = f"-{check.tolerance:g}" if check.unit == "V" else f"-{ROUNDING:g}*ABS({limit})" if check.tolerance else ""
-    margin = f"{found}-{limit}" if check.is_floor else f"{limit}-{found}"
-    return f'IF({margin}>={slack or 0},"{tr(MET)}","{tr(VIOLATED)}")'
+    return Comparison(found, limit_cell(check), AT_LEAST if check.is_floor else AT_MOST, tolerance).verdict(BY_LIMIT)
 
 
 def _tell_acceptance(book: Book, cases: Cases, cells: Cells) -> None:
@@ -218,7 +227,7 @@ def _tell_acceptance(book: Book, cases: Cases, cells: Cells) -> None:
         found = Formula(f"{function}({{{cells.ranges[check.figure]}}})", worst)
         book.acceptance.append(
             Accepted(
-                check.name, check.limit, check.value, check.unit, "at_least" if check.is_floor else "at_most", found,
+                check.name, check.limit, check.value, check.unit, AT_LEAST if check.is_floor else AT_MOST, found,
                 str(verdict["place"] or ""), str(verdict["time"] or ""), check.status, check.source, tolerance=check.tolerance,
             )
         )  # fmt: skip
