@@ -66,9 +66,6 @@ _OF = {
 """Of what the figure of a case is, in words."""
 
 _KM = re.compile(r"km (-?[\d.]+)(?:\s*(?:-|–|to)\s*(-?[\d.]+))?")
-_TRACK = re.compile(r"\btrack (\S+)")
-
-
 _UNITS = re.compile(r"(\d+ of \d+)")
 
 

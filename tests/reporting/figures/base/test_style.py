@@ -1,7 +1,11 @@
 """Figures in files."""
 
+import re
+
 import matplotlib as mpl
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from tractionpower.reporting.figures.base.style import COLOURS, STYLE, new_figure, png_names, save
 
@@ -13,6 +17,34 @@ def test_a_figure_gets_its_name_when_it_is_complete(tmp_path):
     path = save(figure, tmp_path / "new" / "a.b.png")
     assert path.read_bytes().startswith(b"\x89PNG")
     assert [each.name for each in path.parent.iterdir()] == ["a.b.png"]
+
+
+def test_no_text_is_turned_round_by_a_name(tmp_path):
+    with mpl.rc_context(STYLE):
+        figure = new_figure(4.0, 3.0)
+        axes = figure.add_subplot()
+        axes.set_xticks([0.0, 1.0], ["A", "B \u202eretal"])
+        axes.set_ylabel("\u2066voltage")
+        axes.annotate("train \u202e1", (0.0, 0.0))
+        axes.plot([0.0, 1.0], [0.0, 1.0], label="\u202eC")
+        axes.legend()
+        figure.suptitle("study \u202d7")
+    svg = save(figure, tmp_path / "a.svg").read_text(encoding="utf-8")
+    shown = [each.get_text() for each in figure.findobj(Text)]
+    assert {"B \ufffdretal", "\ufffdvoltage", "train \ufffd1", "\ufffdC", "study \ufffd7"} <= {*shown}
+    assert not re.search("[\u202a-\u202e\u2066-\u2069]", svg)
+
+
+def test_a_picture_is_drawn_once(tmp_path, monkeypatch):
+    """Once placed by `finish`, nothing has to be placed again, which savefig would do by drawing it all for nothing."""
+    drawn = []
+    draw = Figure.draw
+    monkeypatch.setattr(Figure, "draw", lambda self, renderer: (drawn.append(self), draw(self, renderer)))
+    with mpl.rc_context(STYLE):
+        figure = new_figure(2.0, 1.0)
+        figure.add_subplot()
+    save(figure, tmp_path / "a.png")
+    assert len(drawn) == 1
 
 
 def test_what_cannot_be_drawn_leaves_no_file(tmp_path, monkeypatch):

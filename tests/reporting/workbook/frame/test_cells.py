@@ -27,6 +27,12 @@ def test_what_xml_forbids_is_replaced():
     assert clean("a\tb\nc\r\nd") == "a\tb\nc\nd"
 
 
+@pytest.mark.parametrize("sign", [*range(0x202A, 0x202F), *range(0x2066, 0x206A)])
+def test_what_turns_texts_round_is_replaced(sign):
+    assert clean(f"IC {chr(sign)}1234") == "IC \ufffd1234"
+    assert clean("\u0627\u200f-\u0628") == "\u0627\u200f-\u0628", "letters that are read from right to left may stay"
+
+
 def test_a_text_is_cut_at_what_a_cell_takes():
     assert len(clean("🚆" * 40_000)) == LONGEST
     assert clean("x" * LONGEST) == "x" * LONGEST

@@ -2,9 +2,11 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 import pytest
+from fake_results import make_case
 from openpyxl import load_workbook
 from read_workbook import read_table
 
+from tractionpower.reporting.workbook import write_workbook
 from tractionpower.reporting.workbook.run.drawn import chosen
 from tractionpower.reporting.workbook.run.load_extracts import period_of
 from tractionpower.reporting.workbook.run.train_extracts import ALL_POINTS, MOST_POINTS, MOST_TRAINS
@@ -89,6 +91,20 @@ def test_sliding_means_are_those_of_the_stored_steps(values, small, case):
     assert "mean of 60 min [kW]" not in rows, "the run is shorter"
     formulas = [row["mean of 15 min [kW]"] for row in read_table(small["Extract substation"])]
     assert sum(str(formula).startswith("=AVERAGE(B") for formula in formulas) == rows["mean of 15 min [kW]"].notna().sum()
+
+
+def test_no_load_is_zero_and_its_sliding_mean_too(tmp_path):
+    """Half an hour of load, then what a solver leaves of nothing: a running sum would drift, and the noise would show."""
+    times = np.arange(7200.0)
+    power = np.where(times < 1800.0, 3456.789 + 1e3 * np.sin(times), -1.8e-7)
+    results, scenario = make_case(substations=2, hours=2.0)
+    frame = pd.DataFrame({"time_s": times + 21_600.0, "substation": "Substation 1", "voltage_v": 3500.0, "power_kw": power})
+    results._source["substations"] = pa.Table.from_pandas(frame.assign(current_a=power / 3.5), preserve_index=False)
+    book = load_workbook(write_workbook(results, scenario, tmp_path / "report.xlsx"), data_only=True)
+    rows = read_table(book["Extract substation"])
+    assert [row["power [kW]"] for row in rows[-100:]] == [0.0] * 100
+    assert [row["mean of 15 min [kW]"] for row in rows[-100:]] == [0.0] * 100
+    assert rows[len(rows) // 4]["mean of 15 min [kW]"] > 3000.0
 
 
 def test_load_duration_falls_from_the_highest_to_the_lowest(small, case):

@@ -1,6 +1,7 @@
 """The sheets of the mean useful voltage, read back."""
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from fake_results import make_case
 from fake_sizing import sized
@@ -38,6 +39,23 @@ def test_hours_are_told_by_zone_and_in_full(book, formulas, study):
             shown = next(each for each in rows if each["hour begins"] == row["from_s"])[row["subject"]]
             assert shown == (None if np.isnan(row[name]) else pytest.approx(row[name]))
     assert len(read_table(book["Useful voltage by hour"], 3)) == len(hours)
+
+
+def test_zones_by_hour_stand_along_the_line_without_empty_ones(write):
+    """The second zone has trains an hour before the first one has, the third one never has any."""
+    results, scenario = make_case(substations=4, hours=2.0)
+    full = sized(results, scenario)
+    rows = full._source["useful_voltage"].to_pandas()
+    names = list(dict.fromkeys(rows.loc[rows["kind"] == "zone", "subject"].astype(str)))
+    hours = (rows["kind"] == "zone") & (rows["window"] == "hour")
+    first = rows.loc[hours, "from_s"].min()
+    late = hours & (rows["subject"] == names[0]) & (rows["from_s"] == first)
+    rows.loc[hours & (rows["subject"] == names[2]), ["current_weighted_v", "time_mean_v"]] = np.nan
+    full._source["useful_voltage"] = pa.Table.from_pandas(rows[~late], preserve_index=False)
+    book = write(full, scenario)
+    for number in (1, 2):
+        assert list(read_table(book["Useful voltage by hour"], number)[0])[1:] == names[:2]
+    assert {row["zone"] for row in read_table(book["Useful voltage by hour"], 3)} == {*names[:2]}
 
 
 def test_acceptance_has_the_lowest_of_the_zones(book, study):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
@@ -51,9 +52,16 @@ def drawing(figures: ReportFigures, source: str = "") -> Iterator[None]:
     """Let all figures inside be drawn as a template says, with `source` at their feet."""
     token = _drawing.set(Drawing(tuple(dict.fromkeys(figures.formats)), figures.names, source))
     try:
-        yield
+        with warnings.catch_warnings():
+            ignore_missing_glyphs()  # texts are also measured while figures are made, before one is written
+            yield
     finally:
         _drawing.reset(token)
+
+
+def ignore_missing_glyphs() -> None:
+    """Let no warning tell that a letter of a name, such as an emoji, is drawn as a box."""
+    warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from")
 
 
 def current_drawing() -> Drawing:

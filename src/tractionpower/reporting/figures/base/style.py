@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.text import Text
-from matplotlib.ticker import ScalarFormatter
+from matplotlib.ticker import FuncFormatter, ScalarFormatter
 from matplotlib.transforms import Bbox
 
 from tractionpower.io.file_names import ENDING, file_names
-from tractionpower.reporting.figures.base.drawing import current_drawing, files_of, remove_files, wanted
+from tractionpower.reporting.facts.characters import unturned
+from tractionpower.reporting.figures.base.drawing import current_drawing, files_of, ignore_missing_glyphs, remove_files, wanted
 from tractionpower.reporting.texts import current_language
 
 # Okabe and Ito's colours stay apart for colour-blind eyes.
@@ -37,6 +40,9 @@ TITLE = 9.5
 
 MOST_TITLE_LINES = 4
 
+PNG_LEVEL = 3
+"""Compression of PNG: above it files get 3 % smaller and take half as long again."""
+
 _WORDS = re.compile(r"(?:km )?\S*\d (?:[AVs%‰]|[kM][VAW]|km/h)(?!\w)\S*|(?:km )\d\S*|\S+")
 """Words between which a line may break: not between a number and its unit."""
 
@@ -54,6 +60,8 @@ STYLE: Any = {
     "grid.linewidth": 0.6,
     "legend.frameon": False,
     "figure.dpi": 200.0,
+    "figure.autolayout": False,
+    "figure.constrained_layout.use": False,  # `new_figure` chooses the layout, whatever a user's own settings are
     "agg.path.chunksize": 20_000,
     "axes.formatter.useoffset": False,  # a voltage stands at its tick as it is
     "svg.fonttype": "path",  # looks the same where the font is missing, as in Word on Windows; the PDF keeps its text as text
@@ -112,10 +120,11 @@ def save(figure: Figure, path: Path) -> Path:
     kind = path.suffix[1:]
     try:
         with mpl.rc_context(STYLE), warnings.catch_warnings():
-            warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from")  # an emoji in a name becomes a box
+            ignore_missing_glyphs()
             warnings.filterwarnings("ignore", "constrained_layout not applied")  # a figure without room is drawn all the same
             finish(figure)
-            figure.savefig(temporary, format=kind, metadata=_about(figure, kind))
+            more: dict[str, Any] = {"pil_kwargs": {"compress_level": PNG_LEVEL}} if kind == "png" else {}
+            figure.savefig(temporary, format=kind, metadata=_about(figure, kind), **more)
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
@@ -130,6 +139,7 @@ def finish(figure: Figure) -> None:
     engine = figure.get_layout_engine()
     if not isinstance(engine, ConstrainedLayoutEngine):
         return  # it has been written before
+    _clean_texts(figure)
     _wrap_title(figure)
     if current_language() == "pl":
         _decimal_commas(figure)
@@ -137,7 +147,26 @@ def finish(figure: Figure) -> None:
     if figure.axes:
         engine.execute(figure)
     _lift_legends(figure, engine)
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)  # with any other, also "none", savefig draws twice to place once more what has its place
+
+
+def _clean_texts(figure: Figure) -> None:
+    """Take from texts what would turn round the names in them; those at ticks are made from what their axis holds."""
+    for parent in (figure, *figure.axes):
+        for child in parent.get_children():
+            if isinstance(child, Axes):
+                continue
+            form = child.get_major_formatter() if isinstance(child, Axis) else None
+            if isinstance(form, FuncFormatter):  # labels that are given with their ticks are told by one
+                form.func = _unturned_labels(form.func)
+            for text in [child.label] if isinstance(child, Axis) else child.findobj(Text):
+                words = unturned(text.get_text())
+                if words != text.get_text():
+                    text.set_text(words)
+
+
+def _unturned_labels(label: Callable[..., str]) -> Callable[..., str]:
+    return lambda x, position=None: unturned(label(x, position))
 
 
 class _CommaFormatter(ScalarFormatter):

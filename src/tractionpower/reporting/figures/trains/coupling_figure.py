@@ -5,7 +5,6 @@ Krzysztozek (2019) names the constant voltage at the pantographs an important si
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
@@ -20,7 +19,7 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.run_data import RunData
 from tractionpower.reporting.facts.series import peaks_kept
 from tractionpower.reporting.figures.base.axes import clock_label, draw_limits, set_clock, voltage_range
-from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, PAGE, STYLE, VERMILION, new_figure, save
+from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, PAGE, STYLE, VERMILION, new_figure
 from tractionpower.reporting.texts import mark, number, tr
 from tractionpower.results.results import Results
 
@@ -29,11 +28,6 @@ PANELS = (
     ("voltage_v", mark("voltage at the\npantograph [V]")),
     ("current_a", mark("current at the\npantograph [A]")),
 )
-
-
-def write_coupling_figure(full: Results, constant: Results, scenario: Scenario, train: str, path: Path) -> Path:
-    """Write `compare_coupling` as PNG and return its path."""
-    return save(compare_coupling(full, constant, scenario, train), path)
 
 
 def compare_coupling(full: Results, constant: Results, scenario: Scenario, train: str) -> Figure:

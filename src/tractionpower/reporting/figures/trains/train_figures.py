@@ -52,7 +52,7 @@ from tractionpower.reporting.figures.base.style import (
     VERMILION,
     new_figure,
 )
-from tractionpower.reporting.texts import mark, number, tr
+from tractionpower.reporting.texts import number, tr
 
 Array = NDArray[Any]
 
@@ -65,12 +65,6 @@ WIDTH, HEIGHT, PANEL = PAGE, 7.6, 2.4
 
 POINTS = 3000
 """Points of a line in a panel."""
-
-PHASE_WORDS = (
-    mark("accelerating"), mark("cruising"), mark("coasting"), mark("braking"), mark("dwelling"), mark("waiting"),
-    mark("holding"), mark("unpowered"),
-)  # fmt: skip
-"""What trains do, in the words of the results, for translators."""
 
 PHASE_COLOURS = dict(zip(PHASES, (VERMILION, SKY, ORANGE, BLUE, GREY, PALE, PURPLE, INK), strict=True))
 

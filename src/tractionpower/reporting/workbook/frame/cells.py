@@ -13,6 +13,7 @@ from openpyxl.cell.cell import Cell
 from openpyxl.styles import Alignment, Border, Font, PatternFill, Side
 
 from tractionpower.model.base import format_time
+from tractionpower.reporting.facts.characters import TURNS
 
 BLUE, INK, GREY, PALE = "1F4E79", "333333", "777777", "D9D9D9"
 EDITABLE_FILL = "FFF9C4"
@@ -40,7 +41,7 @@ FORMATS = {
 }
 """Number formats by the name of the style."""
 
-_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+_FORBIDDEN = re.compile(f"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff{TURNS}]")
 _FORMULA_SIGNS = ("=", "+", "-", "@", "\t", "'")
 _LINE = Side(style="thin", color=PALE)
 _BORDER = Border(bottom=_LINE)
@@ -104,7 +105,7 @@ def plain(value: Any) -> float | int | str | None:
 
 
 def clean(text: str) -> str:
-    """Return a text without what XML forbids, and no longer than a cell takes."""
+    """Return a text without what XML forbids or what turns texts round, and no longer than a cell takes."""
     text = _FORBIDDEN.sub("\ufffd", text.replace("\r\n", "\n").replace("\r", "\n"))
     return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
 

@@ -38,6 +38,9 @@ _JUDGED = {
 }
 """Verdicts by their name and the figures that they judge."""
 
+_SHIFT, _MEAN = "stray_shift_", "highest_mean_rail_potential_v"
+"""Limits of the mean rail potential, each for some leakage, and the figure: it is that of one of them."""
+
 
 def add(book: Book) -> None:
     """Add the sheet of key figures."""
@@ -52,7 +55,8 @@ def add(book: Book) -> None:
     told = {row.name for row in book.acceptance}
     for verdict in book.facts.verdicts:
         name, limit = str(verdict["name"]), str(verdict["limit"])
-        figure = f"longest_spell_above_{limit}_s" if limit.startswith("touch_") else _JUDGED.get(name, "")
+        usual = _MEAN if limit.startswith(_SHIFT) else _JUDGED.get(name, "")
+        figure = f"longest_spell_above_{limit}_s" if limit.startswith("touch_") else usual
         if figure in values and name not in told:
             judge(book, name, f"{{kf_{figure}}}", values[figure])
 

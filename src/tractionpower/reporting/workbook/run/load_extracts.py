@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from tractionpower.reporting.facts.series import interval, sliding_mean
+from tractionpower.reporting.facts.series import interval
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -25,6 +25,9 @@ WINDOWS_S = (900, 3600, 7200)
 
 PRINTED = 22
 """Rows of an extract that are printed."""
+
+NOISE_KW = 1e-5
+"""Power below this is zero [kW]: the solver leaves microamperes, which at 3 kV are some milliwatts, in devices that block."""
 
 FIELDS = ("time_s", "substation", "power_kw")
 POWER = mark("power [kW]")
@@ -126,9 +129,11 @@ def _most_loaded(book: Book, pair: tuple[Array, Array], drawn: Drawn) -> None:
     rows = [[at, mean] for at, mean in zip(start.tolist(), means.tolist(), strict=True)]
     for window in drawn.windows:
         count = window // period
-        for k, mean in enumerate(sliding_mean(means, count).tolist()):
-            whole = k >= count - 1
-            rows[k].append(Formula(f"AVERAGE(B{top + k - count + 1}:B{top + k})", mean) if whole else None)
+        for k, row in enumerate(rows):
+            first_k = k - count + 1
+            # Window by window: a running sum would drift, and not come to zero after hours with load.
+            mean = float(means[first_k : k + 1].mean()) if first_k >= 0 else None
+            row.append(None if mean is None else Formula(f"AVERAGE(B{top + first_k}:B{top + k})", mean))
     if contract is not None:
         rows = [[*row, contract] for row in rows]
     drawn.blocks["substation"] = page.table(columns, rows, frozen=True, printed=PRINTED)
@@ -155,4 +160,5 @@ def _means(time_s: Array, power: Array, period: int, first: int, last: int) -> A
     slot = (time_s // period).astype(int) - first
     count = np.bincount(slot, minlength=last - first + 1)
     total = np.bincount(slot, power, minlength=last - first + 1)
-    return np.asarray(np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0))
+    mean = np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0)
+    return np.where(np.abs(mean) < NOISE_KW, 0.0, mean)

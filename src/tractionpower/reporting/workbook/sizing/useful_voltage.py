@@ -69,7 +69,7 @@ def add(book: Book) -> None:
     if len(rows):
         limit = useful_limit(book.facts)
         _useful(book, rows, limit)
-        _hours(book, rows[(rows["kind"] == "zone") & (rows["window"] == "hour")], limit)
+        _hours(book, rows[rows["kind"] == "zone"], limit)
     voltage_durations.add(book)
 
 
@@ -193,13 +193,21 @@ def _value(cell: Any) -> Any:
 
 
 def _hours(book: Book, rows: pd.DataFrame, limit: Limit | None) -> None:
-    """Add zones by the hour: a row for each hour and a column for each zone, and below all of them with their sums."""
+    """Add zones by the hour: a row for each hour and a column for each zone, and below all of them with their sums.
+
+    Zones stand in the order of table ``useful_voltage``, along the line, from whichever hour on they have trains; one without
+    a mean in any hour, as beyond the last substation, is left out.
+    """
+    along = list(dict.fromkeys(rows["subject"].astype(str)))
+    rows = rows[rows["window"] == "hour"]
+    means = rows[list(_COLUMNS.values())].notna().any(axis=1).groupby(rows["subject"].astype(str)).any()
+    zones = [zone for zone in along if means.get(zone, False)]
+    rows = rows[rows["subject"].astype(str).isin(zones)]
     if rows.empty:
         return
     page = book.page("Useful voltage by hour", "Mean useful voltage of the zones in every hour, by both definitions")
     judge = _Judge(limit, _limit_line(page, limit))
     page.note("Red: below the lowest permitted. The list of all hours below holds the sums that the means come from.")
-    zones = list(dict.fromkeys(rows["subject"].astype(str)))
     ordered = rows.assign(zone=rows["subject"].astype(str)).sort_values(["from_s"], kind="stable")
     numbers = {(row["from_s"], row["zone"]): k for k, row in enumerate(ordered.to_dict("records"), 1)}
     cells = [judge.cells(row) for row in ordered.to_dict("records")]
