@@ -283,9 +283,9 @@ def _mark_devices(axes: Axes, places: GraphPlaces, inches: float) -> None:
     style: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "fontsize": 6.5}
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.8}
     for k in fitting([km for km, _ in named], [False] * len(named), 0.8 * LINE * (high - low) / inches):
-        km, name = named[k]
+        place, name = named[k]
         axes.annotate(
-            shortened(name, MOST_STATION_LETTERS), (0.0, km), (6, 0), va="center", color=DARK_GREEN, zorder=3.5, bbox=box, **style
+            shortened(name, MOST_STATION_LETTERS), (0.0, place), (6, 0), va="center", color=DARK_GREEN, zorder=3.5, bbox=box, **style
         )
 
 
