@@ -285,7 +285,14 @@ def _mark_devices(axes: Axes, places: GraphPlaces, inches: float) -> None:
     for k in fitting([km for km, _ in named], [False] * len(named), 0.8 * LINE * (high - low) / inches):
         place, name = named[k]
         axes.annotate(
-            shortened(name, MOST_STATION_LETTERS), (0.0, place), (6, 0), va="center", color=DARK_GREEN, zorder=3.5, bbox=box, **style
+            shortened(name, MOST_STATION_LETTERS),
+            (0.0, place),
+            (6, 0),
+            va="center",
+            color=DARK_GREEN,
+            zorder=3.5,
+            bbox=box,
+            **style,
         )
 
 
