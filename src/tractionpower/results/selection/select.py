@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -130,6 +130,7 @@ def _run(results: Results, scenario: Scenario, selection: Selection, frames: dic
     return run | {
         "notes": [PART, *_notes(scenario, selection, gone_trains), *run.get("notes", ())],
         "selection": selection.as_dict() | ({"without_rows": gone_trains} if gone_trains else {}),
+        "whole_run": _counted_verdicts(results.run.get("verdicts", ())),
         "start_s": clock.start,
         "end_s": clock.end,
         "steps": round((clock.end - clock.start) / clock.step_s),
@@ -163,6 +164,12 @@ def _train(way: dict[str, Any], rows: pd.DataFrame, scenario: Scenario) -> dict[
         places = (("track", str(row["track"])), ("km", float(row["position_km"])), ("s", float(row["time_s"])))
         told |= {f"lowest_voltage_{name}": value for name, value in places if f"lowest_voltage_{name}" in told}
     return told
+
+
+def _counted_verdicts(verdicts: Iterable[dict[str, Any]]) -> dict[str, int]:
+    """Return how many limits the whole run meets and violates, and how many could not be judged."""
+    met = [verdict.get("met") for verdict in verdicts]
+    return {"met": met.count(True), "violated": met.count(False), "open": met.count(None)}
 
 
 def _clock_of(scenario: Scenario, selection: Selection) -> Scenario:

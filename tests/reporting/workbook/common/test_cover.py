@@ -8,6 +8,7 @@ from read_workbook import texts
 
 from tractionpower.model.report import Document, Report
 from tractionpower.reporting.workbook import write_workbook
+from tractionpower.reporting.workbook.common.acceptance import Accepted, digits_of, place_in_words
 from tractionpower.reporting.workbook.common.cover_verdicts import MOST_LINES
 
 GREEN, RED, AMBER = "C6EFCE", "FFC7CE", "FFEB9C"
@@ -85,6 +86,33 @@ def test_a_limit_that_was_not_judged_is_no_limit_met(case, tmp_path):
 def test_a_run_without_limits_says_so(case, write):
     results, scenario = case
     assert coloured(write(changed(results, verdicts=[]), scenario)["Cover"])["No limits were judged"] == AMBER
+
+
+def test_the_cover_of_a_part_says_of_what_and_that_limits_are_those_of_the_whole_run(case, write):
+    results, scenario = case
+    part = {"selection": {"trains": ["7"], "from": "06:30:00"}, "whole_run": {"met": 2, "violated": 1, "open": 0}}
+    one = changed(results, verdicts=[], trains=results.run["trains"][:1], **part)
+    cover = write(one, scenario)["Cover"]
+    assert cover["A1"].value == scenario.name
+    assert line_of(cover, "Part of the run")[1] == "train 7, from 06:30:00"
+    assert f"1 of {len(scenario.runs)} trains" in line_of(cover, "What is shown")[1]
+    assert "No limits were judged" not in texts(cover)
+    assert any("There 2 of 3 limits are met, 1 violated" in text for text in texts(cover))
+
+
+def test_sheets_that_the_workbook_does_not_have_are_told(case, tmp_path):
+    results, scenario = case
+    report = Report(sheets=("Outages",), leave_out=("Trains",))
+    book = load_workbook(write_workbook(results, scenario, tmp_path / "a.xlsx", report))
+    assert "Trains" not in [sheet.title for sheet in book if sheet.sheet_state == "visible"]
+    assert any("asks for no sheet" in text for text in texts(book["Cover"]))
+
+
+def test_digits_are_the_same_for_limits_of_a_kind_and_a_limit_never_reached_has_no_place():
+    spells = [Accepted(f"spell {k}", f"touch_{k}", limit, "s", "at_most", 0.0) for k, limit in enumerate((300.0, 0.9))]
+    rows = [*spells, Accepted("lowest", "u_min2", 2000.0, "V", "at_least", 2800.0, "km 7")]
+    assert digits_of(rows) == ["0.00", "0.00", "0.0"]
+    assert [place_in_words(row) for row in rows] == ["nowhere", "nowhere", "km 7"]
 
 
 def test_more_limits_than_there_is_room_for_show_the_violated_ones(case, tmp_path):

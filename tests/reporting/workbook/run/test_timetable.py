@@ -1,4 +1,5 @@
 import numpy as np
+import pyarrow as pa
 import pytest
 from fake_feasibility import judged
 from fake_results import make_case
@@ -8,11 +9,12 @@ from read_workbook import read_table
 from tractionpower.reporting.workbook import write_workbook
 from tractionpower.reporting.workbook.run.timetable import PARTS
 from tractionpower.results.columns import DELAY_PARTS
+from tractionpower.results.results import Results
 
 
 def above(sheet):
     """Return labels and values above the table."""
-    return {sheet.cell(row, 1).value: sheet.cell(row, 2).value for row in range(3, int(sheet.freeze_panes[1:]) - 1)}
+    return {sheet.cell(row, 1).value: sheet.cell(row, 3).value for row in range(3, int(sheet.freeze_panes[1:]) - 1)}
 
 
 def test_times_and_deviations_are_those_of_the_table(small_values, small, case):
@@ -33,11 +35,23 @@ def test_late_calls_are_counted_by_the_numbers_that_can_be_edited(small_values, 
     assert (told["late from [s], can be edited"], told["very late from [s], can be edited"]) == (1.0, 60.0)
     assert told["late calls"] == (late >= 1.0).sum() > 0
     assert told["very late calls"] == (late >= 60.0).sum()
-    assert told["largest deviation [s]"] == pytest.approx(late.max(), abs=1e-5)
+    assert told["largest lateness [s]"] == pytest.approx(late.max(), abs=1e-5)
     assert told["mean deviation [s]"] == pytest.approx(late.mean(), abs=1e-5)
-    assert told["train of the largest deviation"] in set(case[0].table("calls")[late >= late.max() - 1e-6]["train"])
+    assert told["train that is latest"] in set(case[0].table("calls")[late >= late.max() - 1e-6]["train"])
     for name in ("late_from_s", "very_late_from_s"):
-        assert small.defined_names[name].attr_text.startswith("'Timetable'!$B$")
+        assert small.defined_names[name].attr_text.startswith("'Timetable'!$C$")
+
+
+def test_where_nobody_is_late_no_train_is_the_latest(case, tmp_path):
+    results, scenario = case
+    calls = results.table("calls")
+    calls = calls.assign(actual_s=calls["planned_s"] - 30.0, late_s=-30.0)
+    early = Results(results.run, results.key_figures, {"calls": pa.Table.from_pandas(calls)}, scenario)
+    file = write_workbook(early, scenario, tmp_path / "early.xlsx")
+    told = above(load_workbook(file, data_only=True)["Timetable"])
+    assert (told["largest lateness [s]"], told["train that is latest"] or "") == (0.0, "")
+    assert told["largest earliness [s]"] == pytest.approx(30.0, abs=1e-5)
+    assert told["train that is earliest"] in set(calls["train"].astype(str))
 
 
 def test_colours_follow_these_numbers(small):

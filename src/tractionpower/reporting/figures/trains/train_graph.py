@@ -282,7 +282,7 @@ def _mark_devices(axes: Axes, places: GraphPlaces, inches: float) -> None:
     named = [(km, name) for km, name, substation in places.devices if substation]
     style: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "fontsize": 6.5}
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.8}
-    for k in fitting([km for km, _ in named], [False] * len(named), 0.8 * LINE * (high - low) / inches):
+    for k in fitting([place for place, _ in named], [False] * len(named), 0.8 * LINE * (high - low) / inches):
         place, name = named[k]
         axes.annotate(
             shortened(name, MOST_STATION_LETTERS),

@@ -52,6 +52,9 @@ LEAST_TOLERANCE = 1e-4
 BY_LIMIT = Words(MET, VIOLATED, OPEN)
 """The words of verdicts on limits."""
 
+SMALL_LIMIT = 10.0
+"""A limit below this is shown with two digits."""
+
 _SENSES = {"at_least": mark("not below"), "at_most": mark("not above")}
 
 _COLUMNS = (
@@ -195,7 +198,7 @@ def _lines(rows: Sequence[Accepted]) -> Iterator[tuple[Any, ...]]:
         known.add(cell)
         yield (
             number, recorded(row.name), row.found, tr(_SENSES[row.sense]), limit, row.unit, row.tolerance or None,
-            _margin(row), _verdict(row), tr(group_of(row)), device_told(row.place), row.time,
+            _margin(row), _verdict(row), tr(group_of(row)), place_in_words(row), row.time,
             limit_in_words(row.limit_name), tr(KNOWN_AS.get(row.status, row.status)), recorded(row.source),
         )  # fmt: skip
 
@@ -258,6 +261,22 @@ def _by_numbers(row: Accepted) -> str:
     return MET if _comparison(row).holds(found, limit, row.tolerance) else VIOLATED
 
 
+def digits_of(rows: Sequence[Accepted]) -> list[str]:
+    """Return the number format of each row: two digits for limits below 10, and for all of the same group and unit."""
+    small = {
+        (group_of(row), row.unit)
+        for row in rows
+        if (limit := number_in(row.limit_value)) is not None and 0.0 < abs(limit) < SMALL_LIMIT
+    }
+    return ["0.00" if (group_of(row), row.unit) in small else "0.0" for row in rows]
+
+
+def place_in_words(row: Accepted) -> str:
+    """Return where the worst was found; of a time above a limit that was never reached, that it was nowhere."""
+    never = row.unit == "s" and row.limit_name.startswith("touch_") and not row.place and number_in(row.found) == 0.0
+    return tr("nowhere") if never else device_told(row.place)
+
+
 def number_in(value: float | Formula | None) -> float | None:
     """Return what a cell comes to, None where that is no number."""
     known = value.value if isinstance(value, Formula) else value
@@ -267,9 +286,9 @@ def number_in(value: float | Formula | None) -> float | None:
 def _name_limits(book: Book, page: Page, block: Block, rows: Sequence[Accepted]) -> None:
     """Name the first cell of each limit, and show those that can be edited so; small numbers get more digits."""
     known: set[str] = set()
-    for row, cell, at in zip(rows, cell_names(rows), range(block.first, block.last + 1), strict=True):
+    lines = zip(rows, cell_names(rows), digits_of(rows), range(block.first, block.last + 1), strict=True)
+    for row, cell, style, at in lines:
         limit = number_in(row.limit_value)
-        style = "0.0" if limit is None or abs(limit) >= 10.0 or limit == 0.0 else "0.00"
         for key in ("found", "margin"):
             page.sheet[block.cell(key, at)]._style = page.styles[style]
         is_first = cell not in known and limit is not None

@@ -19,7 +19,14 @@ from openpyxl.worksheet.hyperlink import Hyperlink
 
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.common.acceptance import accepted_rows
-from tractionpower.reporting.workbook.common.cover_texts import MOST_NOTES, Said, run_head, run_trust, run_verdicts
+from tractionpower.reporting.workbook.common.cover_texts import (
+    MOST_NOTES,
+    Said,
+    judged_elsewhere,
+    run_head,
+    run_trust,
+    run_verdicts,
+)
 from tractionpower.reporting.workbook.common.cover_verdicts import write_headline, write_verdicts
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import shorten
@@ -29,12 +36,12 @@ from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Page
 
 __all__ = ["MOST_NOTES", "TITLE_LENGTH", "Said", "fill_in"]
 
-WIDTHS = (22.0, 26.0, 13.0, 13.0, 14.0, 28.0, 20.0, 28.0)
+WIDTHS = (22.0, 26.0, 13.0, 13.0, 24.0, 28.0, 20.0, 28.0)
 """Widths of the columns [characters]."""
 
 LAST = len(WIDTHS)
 
-CHARACTERS = 165
+CHARACTERS = 175
 """Characters of a text that fit into its width, from the second column to the last."""
 
 LABEL_CHARACTERS = 24
@@ -82,12 +89,16 @@ def fill_in(book: Book, page: Page, groups: Sequence[Group] = ()) -> None:
     rows = accepted_rows(book)
     if rows or found:
         _section(page, tr("Verdict"))
-    if rows or not groups:
+    if facts.part and not rows:
+        say(page, "", judged_elsewhere(facts), "neutral")
+    elif rows or not groups:
         write_headline(page, rows)
     write_verdicts(page, rows)
     for group in found:
         _write(page, "", ((label, text, style.removeprefix("big ")) for label, text, style in group(facts)))
     _write(page, tr("How far to trust it"), trust(facts))
+    if not book.finds_its_sheets():
+        say(page, tr("Note"), tr("The template asks for no sheet that this workbook has, so the others are here."), "doubt")
     _links(book, page)
 
 
@@ -137,7 +148,8 @@ def _title(book: Book, page: Page) -> None:
     kind = KINDS.get(str(subject.run.get("kind") or ""), "")
     if book.subject.run.get("feasibility"):
         kind = mark("Feasibility of a timetable")
-    study = shorten(subject.study, TITLE_LENGTH) if report.document.title else ""
+    name = subject.name if isinstance(subject, Facts) else subject.study
+    study = shorten(name, TITLE_LENGTH) if report.document.title else ""
     page.put(2, 1, " · ".join(part for part in (tr(kind), study) if part), "subtitle")
     if report.logo:
         _logo(page, Path(report.logo))

@@ -31,16 +31,33 @@ def run_head(facts: Facts) -> Iterator[Said]:
     clock, run = facts.scenario.clock, facts.run
     step = run.get("step_s", clock.step_s)
     begin, end = format_time(run.get("start_s", clock.start)), format_time(run.get("end_s", clock.end))
-    supply = facts.scenario.supply
+    supply, trains = facts.scenario.supply, len(facts.scenario.runs)
+    of_part = tr("{shown} of {all} trains", shown=len(facts.run.get("trains", ())), all=trains) if facts.part else ""
     parts = (
-        trn("{count} train", "{count} trains", len(facts.scenario.runs)),
+        of_part or trn("{count} train", "{count} trains", trains),
         trn("{count} substation", "{count} substations", len(supply.substations)),
         trn("{count} section cabin", "{count} section cabins", len(supply.section_cabins)) if supply.section_cabins else "",
         trn("{count} fixed load", "{count} fixed loads", len(supply.loads)) if supply.loads else "",
     )
     words = tr("{begin} to {end} in steps of {step} s", begin=begin, end=end, step=number(step, 3))
-    yield tr("What was computed"), f"{words}: {', '.join(filter(None, parts))}.", "wrapped"
+    if facts.part:
+        yield tr("Part of the run"), facts.part, "wrapped"
+    yield tr("What is shown") if facts.part else tr("What was computed"), f"{words}: {', '.join(filter(None, parts))}.", "wrapped"
     yield tr("Coupling"), _coupling(facts), "wrapped"
+
+
+def judged_elsewhere(facts: Facts) -> str:
+    """Return what there is to say of the verdicts in the report of a part."""
+    counts = facts.run.get("whole_run") or {}
+    words = tr("Limits are judged for the whole run, not for a part of it.")
+    if not counts or not sum(counts.values()):
+        return words
+    told = tr(
+        "There {met} of {all} limits are met, {violated} violated, {open} not judged; its report names them.",
+        all=sum(counts.values()),
+        **counts,
+    )
+    return f"{words} {told}"
 
 
 def _coupling(facts: Facts) -> str:

@@ -11,7 +11,6 @@ from typing import Any
 from openpyxl.formatting.rule import FormulaRule
 from openpyxl.styles import Alignment
 
-from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.texts import mark, recorded, tr, trn
 from tractionpower.reporting.workbook.common.acceptance import (
     MET,
@@ -19,7 +18,9 @@ from tractionpower.reporting.workbook.common.acceptance import (
     VIOLATED,
     Accepted,
     colour_words,
+    digits_of,
     number_in,
+    place_in_words,
     word_of,
 )
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill
@@ -29,6 +30,9 @@ from tractionpower.results.verdicts import AT_LEAST
 
 MOST_LINES = 24
 """Limits that the cover lists; violated ones come first where there are more."""
+
+NAME_CHARACTERS = 62
+"""Characters of the name of a limit, or of a place, that fit into one line."""
 
 MOST_NAMED = 40
 """Rows whose names the headline can tell; a formula has at most 8192 characters."""
@@ -144,8 +148,9 @@ def write_verdicts(page: Page, rows: Sequence[Accepted]) -> None:
     for first, last in ((1, 2), (6, 7)):
         page.sheet.merge_cells(start_row=top, start_column=first, end_row=top, end_column=last)
     page.next += 1
+    digits = digits_of(rows)
     for number in _listed(rows):
-        _verdict(page, rows[number], number + 1)
+        _verdict(page, rows[number], number + 1, digits[number])
     colour_words(page.sheet, f"E{top + 1}:E{page.next - 1}")
     if len(rows) > MOST_LINES:
         more = len(rows) - MOST_LINES
@@ -158,9 +163,9 @@ def _listed(rows: Sequence[Accepted]) -> list[int]:
     return sorted(order[:MOST_LINES])
 
 
-def _verdict(page: Page, row: Accepted, number: int) -> None:
+def _verdict(page: Page, row: Accepted, number: int, digits: str) -> None:
     at, word = page.next, word_of(row)
-    name, where = recorded(row.name), ", ".join(part for part in (device_told(row.place), row.time) if part)
+    name, where = recorded(row.name), ", ".join(part for part in (place_in_words(row), row.time) if part)
     found, limit = number_in(row.found), number_in(row.limit_value)
     cells: tuple[tuple[Any, str], ...] = (
         (name[:1].upper() + name[1:], "any"), ("", "any"),
@@ -172,14 +177,13 @@ def _verdict(page: Page, row: Accepted, number: int) -> None:
     for column, (value, style) in enumerate(cells, 1):
         page.put(at, column, value, style)
     unit = f'" {_quoted(row.unit)}"' if row.unit else ""
-    digits = "0.0" if limit is None or abs(limit) >= 10.0 or limit == 0.0 else "0.00"
     sign = "≥" if row.sense == AT_LEAST else "≤"
     _align(page, at, 5)
     _show_as(page, at, 3, f"{digits}{unit}")
     _show_as(page, at, 4, f'"{sign} "{digits}{unit}')
     for first, last in ((1, 2), (6, 7)):
         page.sheet.merge_cells(start_row=at, start_column=first, end_row=at, end_column=last)
-    lines = max(math.ceil(len(name) / 56), math.ceil(len(where) / 56), 1)
+    lines = max(math.ceil(len(name) / NAME_CHARACTERS), math.ceil(len(where) / NAME_CHARACTERS), 1)
     page.sheet.row_dimensions[at].height = LINE_POINTS * lines + 1.0
     page.next += 1
 

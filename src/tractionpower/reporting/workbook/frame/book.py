@@ -76,6 +76,10 @@ class Book:
         """Return the pages that the template keeps, in its order; of all that are there by now."""
         return chosen_pages(self.pages, self.report)
 
+    def finds_its_sheets(self) -> bool:
+        """Return whether any sheet that the template names, and does not leave out, is there by now."""
+        return self.report.sheets is None or bool(named_pages(self.pages, self.report))
+
     def define(self, name: str, page: Page, area: str) -> str:
         """Name a cell or a range of a page, for formulas anywhere in the book, and return the name."""
         return self.names.define(name, page.sheet, area)
@@ -125,13 +129,18 @@ class Book:
 
 
 def chosen_pages(pages: list[Page], report: Report) -> list[Page]:
-    """Return the pages that a template asks for, in its order; all of them where it asks for none that is there."""
+    """Return the pages that a template asks for, in its order; where none of them is there, all that it does not leave out."""
+    without_choice = report.model_copy(update={"sheets": None})
+    return named_pages(pages, report) or named_pages(pages, without_choice) or pages
+
+
+def named_pages(pages: list[Page], report: Report) -> list[Page]:
+    """Return the pages that a template names and does not leave out, in its order."""
     by_name = {name.casefold(): page for page in pages for name in (page.sheet.title, page.name)}
     wanted = list(by_name.values()) if report.sheets is None else [by_name.get(name.casefold()) for name in report.sheets]
     left_out = {name.casefold() for name in report.leave_out}
     order = pages if report.sheets is None else [page for page in dict.fromkeys(wanted) if page is not None]
-    kept = [page for page in order if not {page.name.casefold(), page.sheet.title.casefold()} & left_out]
-    return kept or pages
+    return [page for page in order if not {page.name.casefold(), page.sheet.title.casefold()} & left_out]
 
 
 def _drawn_from(page: Page) -> set[str]:

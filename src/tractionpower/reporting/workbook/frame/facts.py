@@ -74,10 +74,19 @@ class Facts(Subject):
         self._tables: dict[str, pd.DataFrame] = {}
 
     @property
+    def name(self) -> str:
+        """Name of the study, whatever part of it this is."""
+        return self.scenario.name or super().study
+
+    @property
+    def part(self) -> str:
+        """What part of the run this is, in words; empty for all of it."""
+        return selection_words(self.run)
+
+    @property
     def study(self) -> str:
-        """Name of the study."""
-        name, selected = self.scenario.name or super().study, selection_words(self.run)
-        return f"{name} ({selected})" if selected else name
+        """Name of the study, and of what part of it."""
+        return f"{self.name} ({self.part})" if self.part else self.name
 
     @property
     def input_hash(self) -> str:

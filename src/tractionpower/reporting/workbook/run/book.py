@@ -30,7 +30,7 @@ from tractionpower.results.results import Results
 def build(results: Results, scenario: Scenario, report: Report) -> Book:
     """Return the workbook of a run; a sheet that would be empty is left out."""
     book = Book(Facts(results, scenario), report)
-    front = book.page("Cover", shorten(book.facts.study, cover.TITLE_LENGTH))
+    front = book.page("Cover", shorten(book.facts.name, cover.TITLE_LENGTH))
     for add in (feasibility.add, remedies.add, causes.add, delays.add, sections.add, lost_time.add):
         add(book)
     for add in (ratings.add, peaks.add, device_loads.add, useful_voltage.add):

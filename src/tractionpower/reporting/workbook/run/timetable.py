@@ -55,8 +55,8 @@ def add(book: Book) -> None:
         columns += [Column(f"{tr(cause_in_words(part))} [s]", "0.0", key=part) for part in PARTS]
     else:
         page.note(
-            "What deviations are made of (voltage, current limit, driving, stops, other trains) tells `tractionpower"
-            " feasibility`, which also lets each train run alone: there this sheet has a column for each cause."
+            "What deviations are made of (voltage, current limit, driving, stops, other trains) tells command feasibility, which"
+            " also lets each train run alone: there this sheet has a column for each cause."
         )
     calls: list[dict[Any, Any]] = frame.to_dict("records")
     rows = [_row(book, call, causes) for call in calls]

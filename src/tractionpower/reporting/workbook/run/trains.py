@@ -118,8 +118,8 @@ def _journeys(book: Book) -> None:
     page = book.page("Trains", "Trains")
     page.note(
         "Times of day go beyond 24:00:00 on the next day. Late: simulated less planned time at the last timed call, negative is"
-        " early. Mean useful voltage: current-weighted, from sheet Voltages. Voltages below the limit are red. Net is what is taken"
-        " less what is returned; sums and net are formulas."
+        " early. Mean useful voltage: current-weighted, from sheet Voltages. Voltages below the limit are red. Net is what is"
+        " taken less what is returned; sums and net are formulas."
     )
     rows = [_journey(facts, train, number_) for number_, train in enumerate(facts.trains, 1)]
     block = page.table(_COLUMNS, rows, frozen=True)
