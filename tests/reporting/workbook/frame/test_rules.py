@@ -11,4 +11,4 @@ def test_a_rule_refers_to_a_name_or_else_to_its_value():
     names.define("limit_u_min2", sheet, "A1")
     rule.write(names)
     found = [each.formula[0] for area in sheet.conditional_formatting for each in area.rules]
-    assert found == ["AND(ISNUMBER(C3),C3<2000)", "AND(ISNUMBER(C3),C3<limit_u_min2)"]
+    assert found == ["AND(ISNUMBER(C3),C3<2000)", "AND(ISNUMBER(C3),ISNUMBER(limit_u_min2),C3<limit_u_min2)"]

@@ -43,5 +43,6 @@ class Rule:
         first = self.area.split(":", maxsplit=1)[0]
         found = {name: name if name in names else f"{value:.10g}" for name, value in self.values.items()} | {"cell": first}
         test = _PLACE.sub(lambda match: found[match.group(1)], self.test)
-        rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{test})"], stopIfTrue=True, fill=fill(self.colour))
+        limits = "".join(f"ISNUMBER({name})," for name in self.values if name in names)  # one that was emptied colours nothing
+        rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{limits}{test})"], stopIfTrue=True, fill=fill(self.colour))
         self.sheet.conditional_formatting.add(self.area, rule)

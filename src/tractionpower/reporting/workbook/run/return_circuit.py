@@ -10,13 +10,15 @@ import pandas as pd
 from tractionpower.model.base import parse_time
 from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.texts import mark, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import MET, OPEN, VIOLATED, colour_verdicts, verdict_word
+from tractionpower.reporting.workbook.common.acceptance import BY_LIMIT, OPEN, colour_verdicts, verdict_word
+from tractionpower.reporting.workbook.common.verdicts import Comparison, same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import FIRST_PRINTED, Block, Column, Page, heading_of
 from tractionpower.reporting.workbook.frame.plots import COLOURS, Line, draw, scatter
 from tractionpower.results.stray import FORMATIONS
+from tractionpower.results.verdicts import AT_MOST
 
 MOST_DRAWN = 3
 """Return conductors in the chart."""
@@ -101,13 +103,13 @@ def _judged(row: dict[str, Any], found: float | None, limit: float | None) -> tu
     """Return the verdict, which follows the limit where numbers decide, and how the limit is known."""
     word: Formula | str = verdict_word(row)
     if row["met"] is not None and found is not None and limit is not None and (found <= limit) == row["met"]:
-        word = Formula(f'IF({{found}}<={{limit}},"{tr(MET)}","{tr(VIOLATED)}")', word)
+        word = Formula(Comparison("{found}", "{limit}", AT_MOST).verdict(BY_LIMIT), word)
     return word, tr(KNOWN_AS.get(row["status"], row["status"])), recorded(row["source"])
 
 
 def _limit(name: str, value: float | None) -> Formula | float | None:
     """Return a limit as that of the sheet of acceptance, which can be edited there."""
-    return None if value is None else Formula(f"{{{name}}}", value)
+    return None if value is None else Formula(same_as(f"{{{name}}}"), value)
 
 
 def _touch(page: Page, rows: Sequence[dict[str, Any]]) -> None:

@@ -11,6 +11,7 @@ import pandas as pd
 from tractionpower.reporting.facts.series import peaks_kept
 from tractionpower.reporting.figures.base.labels import fitting
 from tractionpower.reporting.texts import number, tr
+from tractionpower.reporting.workbook.common.verdicts import same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import limit_in_words
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -149,7 +150,7 @@ def _worst(book: Book, drawn: Drawn, frame: pd.DataFrame, runs: Sequence[Array])
     page.section("Limit, as the chart shows it")
     limit = book.facts.limit("u_min2")
     if limit:
-        value = Formula("{limit_u_min2}", limit.value)
+        value = Formula(same_as("{limit_u_min2}"), limit.value)
         columns = [Column(TIME, "time", key="time"), Column(f"{limit_in_words('u_min2')} [V]", "0", key="limit")]
         drawn.blocks["worst limit"] = page.table(columns, [(at, value) for at in drawn.spans["worst"]])
     shown = [lowest[worst], float(np.nanmax(volts[rows])), *([limit.value] if limit else [])]
@@ -203,12 +204,12 @@ def _class(begin: float, width: float, hours: float, total: float, limits: dict[
         hours,
         Formula("100*{hours}/SUM({histogram_hours})", share),
     ]
-    row.append(_if("{to}<={limit_u_min2}", below, share) if "u_min2" in limits else 0.0)
+    row.append(_if("ISNUMBER({limit_u_min2}),{to}<={limit_u_min2}", below, share) if "u_min2" in limits else 0.0)
     inside = 0.0 if below or above else share
     row.append(Formula("{share}-{low}-{high}", inside))
-    row.append(_if("{from}>={limit_u_max1}", above, share) if "u_max1" in limits else 0.0)
+    row.append(_if("ISNUMBER({limit_u_max1}),{from}>={limit_u_max1}", above, share) if "u_max1" in limits else 0.0)
     return row
 
 
 def _if(condition: str, holds: bool, share: float) -> Formula:
-    return Formula(f"IF({condition},{{share}},0)", share if holds else 0.0)
+    return Formula(f"IF(AND({condition}),{{share}},0)", share if holds else 0.0)

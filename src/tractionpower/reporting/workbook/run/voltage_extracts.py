@@ -9,6 +9,7 @@ import pandas as pd
 from tractionpower.reporting.facts.places import LinePlaces
 from tractionpower.reporting.figures.base.labels import fitting
 from tractionpower.reporting.texts import mark, tr
+from tractionpower.reporting.workbook.common.verdicts import same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import limit_in_words
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -82,7 +83,7 @@ def _limits(book: Book, page: Page, drawn: Drawn) -> None:
     page.section("Limits, as the chart shows them")
     columns = [Column(KM, "0.000", key="km")]
     columns += [Column(f"{limit_in_words(name)} [V]", "0", key=limit_key(name)) for name in known]
-    values = [Formula(f"{{limit_{name}}}", value) for name, value in known.items()]
+    values = [Formula(same_as(f"{{limit_{name}}}"), value) for name, value in known.items()]
     block = page.table(columns, [(km, *values) for number in lines for km in drawn.spans[km_span(number)]])
     drawn.blocks["limits"] = block
     drawn.stretches["limits"] = [

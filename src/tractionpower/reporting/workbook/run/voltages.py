@@ -6,6 +6,7 @@ from typing import Any
 
 from tractionpower.model.base import parse_time
 from tractionpower.reporting.texts import mark
+from tractionpower.reporting.workbook.common.verdicts import Comparison
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -13,6 +14,7 @@ from tractionpower.reporting.workbook.frame.page import Block, Column
 from tractionpower.reporting.workbook.run.judged import judge
 from tractionpower.reporting.workbook.run.sums import Told, number, room_above, write_above
 from tractionpower.reporting.workbook.run.trains import USEFUL, colour_low, place_of, useful_name
+from tractionpower.results.verdicts import AT_LEAST
 
 _COLUMNS = (
     Column("train", widest=34, key="train"),
@@ -74,7 +76,11 @@ def _row(facts: Facts, train: dict[str, Any]) -> list[Any]:
     told = when is not None and train.get("lowest_voltage_s") == when  # a part of the run may have another lowest voltage
     track, km = (train.get("lowest_voltage_track"), train.get("lowest_voltage_km")) if told else (None, None)
     limit = facts.limit("u_min2")
-    margin = None if lowest is None or limit is None else Formula("{lowest}-{limit_u_min2}", lowest - limit.value)
+    margin = (
+        None
+        if lowest is None or limit is None
+        else Formula(Comparison("{lowest}", "{limit_u_min2}", AT_LEAST).margin, lowest - limit.value)
+    )
     energy, charge = figure("useful_energy_kwh"), figure("useful_charge_ah")
     volts, seconds = figure("voltage_of_useful_steps_vs"), figure("time_of_useful_steps_s")
     return [

@@ -11,12 +11,13 @@ import pandas as pd
 from tractionpower.model.base import format_time
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.common.acceptance import Accepted
-from tractionpower.reporting.workbook.common.verdicts import same_as
+from tractionpower.reporting.workbook.common.verdicts import Comparison, same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column
-from tractionpower.reporting.workbook.sizing.judging import HOLDS, NO, YES, colour_word, judged, known
+from tractionpower.reporting.workbook.sizing.judging import BY_RATING, HOLDS, NO, YES, colour_word, judged, known
+from tractionpower.results.verdicts import AT_MOST
 
 NOT_LIMITED = mark("not limited")
 MOST_ROWS = 3000
@@ -117,7 +118,7 @@ def _every(rows: pd.DataFrame, first: int) -> Iterator[tuple[Any, ...]]:
 def _single(rows: pd.DataFrame, limits: dict[str, str]) -> Iterator[tuple[Any, ...]]:
     for row in rows.to_dict("records"):
         cell = limits.get(row["band"])
-        permitted = row["permitted_s"] if cell is None else Formula(cell, row["permitted_s"])
+        permitted = row["permitted_s"] if cell is None else Formula(same_as(cell), row["permitted_s"])
         yield _row(row, row["train"], (row["share_percent"], row["beyond_s"], permitted))
 
 
@@ -127,7 +128,7 @@ def _row(row: dict[Any, Any], train: str, cells: tuple[Any, Any, Any]) -> tuple[
     holds: Formula | str = tr(NOT_LIMITED)
     if known(row["permitted_s"]):
         word = NO if row["longest_s"] > row["permitted_s"] + float(_SLACK) else YES
-        holds = judged(f'IF({{longest}}>{{permitted}}+{_SLACK},"{tr(NO)}","{tr(YES)}")', word, str(row["met"]))
+        holds = judged(Comparison("{longest}", "{permitted}", AT_MOST, _SLACK).verdict(BY_RATING), word, str(row["met"]))
     return (
         train, recorded(row["band"]), row["from_v"], row["to_v"], row["total_s"], share, beyond, row["longest_s"],
         row["longest_from_s"], permitted, holds,
