@@ -84,13 +84,15 @@ def test_figures_of_the_trains_shown_and_none_of_an_earlier_run(tmp_path, line, 
     assert {path.name for path in tmp_path.iterdir()} == {"train_graph.png", "train-33.png", "mine.png"}
 
 
-def test_of_many_trains_lines_are_thin_and_names_and_circles_stay_away():
+def test_of_many_trains_lines_are_thin_names_stay_away_and_circles_are_dots():
     many = [TrainLine(f"{k}", 60.0 * k + np.linspace(0.0, 900.0, 91), np.linspace(0.0, 20.0, 91)) for k in range(MOST_NAMES + 1)]
     circles = [(60.0 * k, 0.0) for k in range(MOST_CIRCLES + 1)]
     (axes,) = train_graph([GraphPanel("", many, circles)], "").axes
-    assert (len(axes.texts), drawn(axes, "planned (timetable)")) == (0, [])
+    (dots,) = drawn(axes, "planned (timetable)")
+    assert (len(axes.texts), len(dots.get_xdata())) == (0, len(circles))
     (fewer,) = train_graph([GraphPanel("", many[:-1], circles[:-1])], "").axes
     assert (len(fewer.texts) > 10, len(drawn(fewer, "planned (timetable)"))) == (True, 1)
+    assert dots.get_markersize() < drawn(fewer, "planned (timetable)")[0].get_markersize()
     assert axes.lines[0].get_linewidth() < fewer.lines[0].get_linewidth()
 
 
@@ -102,6 +104,7 @@ def test_substations_and_cabins_stand_on_the_left_axis():
     assert (list(substations.get_ydata()), list(cabins.get_ydata())) == ([0.0, 20.0], [10.0])
     assert set(substations.get_xdata()) == {0.0}
     assert substations.get_marker() != cabins.get_marker()
+    assert [(text.get_text(), text.xy[1]) for text in axes.texts if text.get_gid() == "substation"] == [("A", 0.0), ("B", 20.0)]
 
 
 def test_a_line_is_broken_where_the_train_changes_to_a_track_with_other_kilometres():

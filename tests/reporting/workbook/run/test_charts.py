@@ -58,7 +58,7 @@ def test_the_chart_of_voltages_shows_pantographs_limits_and_substations(small, c
     by_name = {series.tx.v: column_of(small, series.yVal.numRef.f) for series in chart.series}
     curves = {f"track {track}, {which}" for track in "12" for which in ("lowest", "mean", "highest")}
     places = {"Substation 1", "Substation 2", "Substation 3", "C"}
-    assert set(by_name) == curves | {"U_min2", "U_n", "U_max1"} | places
+    assert set(by_name) == curves | {"U_min2", "U_n", "U_max1", "U_max2"} | places
     _, (sheet, top, bottom) = by_name["track 2, lowest"]
     assert {(sheet.cell(row, 1).value, sheet.cell(row, 2).value) for row in range(top, bottom + 1)} == {("pantograph", "2")}
     for name in curves:
@@ -71,13 +71,13 @@ def test_the_chart_of_voltages_shows_pantographs_limits_and_substations(small, c
 
 def test_limits_in_charts_follow_the_cells_that_can_be_edited(small, charts):
     by_name = {series.tx.v: column_of(small, series.yVal.numRef.f)[0] for series in charts["Voltage along the line"].series}
-    for name in ("u_min2", "u_n", "u_max1"):
+    for name in ("u_min2", "u_n", "u_max1", "u_max2"):
         shown = by_name[f"U_{name[2:]}"]
         assert len(shown) == 2
         if f"limit_{name}" in small.defined_names:
             assert set(shown) == {f"=limit_{name}"}
         else:
-            assert set(shown) == {{"u_min2": 2000, "u_n": 3000, "u_max1": 3600}[name]}
+            assert set(shown) == {{"u_min2": 2000, "u_n": 3000, "u_max1": 3600, "u_max2": 3900}[name]}
 
 
 def test_axes_are_seen_and_tell_their_units(charts):

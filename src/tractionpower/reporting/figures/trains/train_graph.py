@@ -233,8 +233,9 @@ def _draw_panel(axes: Axes, panel: GraphPanel, inches: float, *, names: bool, ci
         )
     axes.margins(y=0.03)
     _name_stations(axes, panel.places.stations, inches)
-    _mark_devices(axes, panel.places, inches)
-    written = draw_delays(axes, panel.delays, WIDTH - NAMES, inches) if panel.delays is not None else []
+    written = _mark_devices(axes, panel.places, inches)
+    if panel.delays is not None:
+        written += draw_delays(axes, panel.delays, WIDTH - NAMES, inches)
     if names:
         _name_trains(axes, panel.lines, panel.planned if circles else (), written, inches)
 
@@ -271,8 +272,8 @@ def _name_stations(axes: Axes, stations: Sequence[tuple[float, str, bool]], inch
     right.spines["right"].set_visible(False)
 
 
-def _mark_devices(axes: Axes, places: GraphPlaces, inches: float) -> None:
-    """Mark substations and section cabins on the left, and name the substations that have room for it."""
+def _mark_devices(axes: Axes, places: GraphPlaces, inches: float) -> list[Box]:
+    """Mark substations and section cabins on the left; name the substations that have room, and return where."""
     for substation, sign, size, label in ((True, ">", 6, tr("substation")), (False, "s", 3.5, tr("section cabin"))):
         km = [place for place, _, kind in places.devices if kind == substation]
         if km:
@@ -282,18 +283,13 @@ def _mark_devices(axes: Axes, places: GraphPlaces, inches: float) -> None:
     named = [(km, name) for km, name, substation in places.devices if substation]
     style: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "fontsize": 6.5}
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.8}
+    (left, right), written = axes.get_xlim(), list[Box]()
     for k in fitting([place for place, _ in named], [False] * len(named), 0.8 * LINE * (high - low) / inches):
-        place, name = named[k]
-        axes.annotate(
-            shortened(name, MOST_STATION_LETTERS),
-            (0.0, place),
-            (6, 0),
-            va="center",
-            color=DARK_GREEN,
-            zorder=3.5,
-            bbox=box,
-            **style,
-        )
+        place, name = named[k][0], shortened(named[k][1], MOST_STATION_LETTERS)
+        axes.annotate(name, (0.0, place), (6, 0), va="center", color=DARK_GREEN, zorder=3.5, bbox=box, gid="substation", **style)
+        wide = (LETTER * len(name) + 0.1) * (right - left) / (WIDTH - NAMES)
+        written.append((left + wide / 2, place, wide))
+    return written
 
 
 def _name_trains(

@@ -31,7 +31,7 @@ from tractionpower.results.verdicts import AT_LEAST
 MOST_LINES = 24
 """Limits that the cover lists; violated ones come first where there are more."""
 
-NAME_CHARACTERS = 62
+NAME_CHARACTERS = 66
 """Characters of the name of a limit, or of a place, that fit into one line."""
 
 MOST_NAMED = 40
