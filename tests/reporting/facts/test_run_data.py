@@ -1,5 +1,6 @@
 """What figures read of a run: tables that are there, key figures, trains on their routes."""
 
+import pandas as pd
 import pytest
 from fake_runs import small_run
 
@@ -71,3 +72,14 @@ def test_the_step_in_which_a_train_leaves_is_left_out(data):
     whole = RunData(Results(data.results.run | {"trains": ways}, [], data.results._source), data.scenario)
     assert len(whole.whole_rows("1")) == len(rows)
     assert cut.whole_rows("99") is None
+
+
+def test_rows_of_each_train_are_in_the_order_of_time_however_the_table_is(data):
+    rows = data.results.table("trains").sample(frac=1.0, random_state=1)
+    mixed = RunData(data.results, data.scenario, {"trains": rows})
+    found = dict(mixed.rows_of("trains", "train"))
+    assert list(found) == sorted(rows["train"].astype(str).unique())
+    assert sum(map(len, found.values())) == len(rows)
+    for name, own in found.items():
+        pd.testing.assert_frame_equal(own, rows[rows["train"] == name].sort_values("time_s", kind="stable"))
+    assert mixed.whole_rows("no such train") is None

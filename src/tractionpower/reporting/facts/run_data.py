@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from tractionpower.model.scenario import Scenario
@@ -39,6 +40,7 @@ class RunData:
     results: Results
     scenario: Scenario
     _read: dict[str, pd.DataFrame] = field(default_factory=dict)
+    _parts: dict[tuple[str, str], dict[str, pd.DataFrame]] = field(default_factory=dict)
 
     def table(self, name: str) -> pd.DataFrame | None:
         """Return a table, or None if the run has none or it is empty: `output.tables` may leave it out."""
@@ -50,10 +52,14 @@ class RunData:
 
     def rows_of(self, name: str, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
         """Yield the rows of each device or train of a table in the order of time; `key` is the column of its name."""
-        rows = self.table(name)
-        if rows is not None:
-            for which, own in rows.groupby(key, observed=True, sort=True):
-                yield str(which), own.sort_values("time_s", kind="stable")
+        yield from self._by_key(name, key).items()
+
+    def _by_key(self, name: str, key: str) -> dict[str, pd.DataFrame]:
+        """Return the rows of each device or train of a table: parts of it in order, which is sorted once for all figures."""
+        if (name, key) not in self._parts:
+            rows = self.table(name)
+            self._parts[name, key] = {} if rows is None else _parts(rows, key)
+        return self._parts[name, key]
 
     @property
     def title(self) -> str:
@@ -107,15 +113,14 @@ class RunData:
 
         Its means are those of the whole step, of which the train was on the line for a part only.
         """
-        trains = self.table("trains")
-        if trains is None:
+        rows = self._by_key("trains", "train").get(name)
+        if rows is None:
             return None
-        rows = trains[trains["train"] == name].sort_values("time_s", kind="stable")
         finished = self.ways.get(name, {}).get("finished_s")
         leaves = finished is not None and len(rows) > 1
         if leaves and finished < rows["time_s"].iloc[-1] + self.scenario.clock.step_s - SAME_S:
             rows = rows.iloc[:-1]
-        return rows if len(rows) else None
+        return rows
 
     @property
     def interval_s(self) -> float:
@@ -133,3 +138,12 @@ class RunData:
         clock = self.scenario.clock
         steps = int(self.results.run.get("steps", 0))
         return max(0.0, steps * clock.step_s - (clock.warm_up or 0.0)) / 3600.0
+
+
+def _parts(rows: pd.DataFrame, key: str) -> dict[str, pd.DataFrame]:
+    codes, names = pd.factorize(rows[key], sort=True)
+    order = np.lexsort((rows["time_s"].to_numpy(), codes))
+    ends = np.searchsorted(codes[order], np.arange(len(names)), side="right")
+    begins = np.searchsorted(codes[order], np.arange(len(names)), side="left")
+    in_order = rows.iloc[order]
+    return {str(name): in_order.iloc[begin:end] for name, begin, end in zip(names, begins, ends, strict=True)}
