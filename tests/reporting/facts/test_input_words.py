@@ -3,8 +3,9 @@
 import json
 
 import pytest
+from small_studies import make_scenario
 
-from tractionpower.reporting.facts.input_words import bare_unit, input_in_words, names_of_inputs, value_in_words
+from tractionpower.reporting.facts.input_words import bare_unit, input_in_words, names_of_inputs, value_at, value_in_words
 
 
 @pytest.mark.parametrize(
@@ -36,3 +37,16 @@ def test_a_row_that_was_cut_anywhere_is_told_as_far_as_it_is_whole():
         assert told.endswith("…")
         if length > text.index('"km"'):
             assert told.startswith('id say "x", [y], ')
+
+
+def test_the_value_of_an_input_is_what_a_change_would_set():
+    scenario = make_scenario()
+    first, *others = scenario.supply.substations
+    assert value_at(scenario, f"supply.substations[{first.id}].km") == str(first.km)
+    assert value_at(scenario, "supply.substations[*].km") is None  # they differ
+    assert others
+    assert value_at(scenario, "supply.substations[*].units") == str(first.units)
+    assert value_at(scenario, "supply.substations[*].units_in_service") == str(first.units)  # left out: all of them
+    assert value_at(scenario, "supply.contact_lines[0].from_km") == str(scenario.supply.contact_lines[0].from_km)
+    assert value_at(scenario, "supply.contact_lines[99].from_km") is None
+    assert value_at(scenario, "supply.nothing[x].here") is None

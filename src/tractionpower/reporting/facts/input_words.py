@@ -8,7 +8,9 @@ from collections.abc import Iterable
 from typing import Any
 
 from tractionpower.model.quantity import Quantity
+from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.texts import mark, number, recorded, tr
+from tractionpower.studies.sweep.keys import text_of
 
 ROOMS = ("supply", "line", "timetable")
 """Parts of a scenario that go without saying before the list that they hold."""
@@ -28,6 +30,9 @@ ITEMS = {
     "vehicles": mark("vehicle {id}"),
 }
 """What an item of a list is called that has an identifier."""
+
+SAME_AS = {"units_in_service": "units"}
+"""Inputs that have the value of another one where they are left out."""
 
 CUT = "…"
 """What stands at the end of a value that was too long to be kept whole."""
@@ -55,8 +60,8 @@ def input_in_words(path: str) -> str:
         if key is not None:
             parts[-1:] = [_item(steps[place - 1][0] or "", key)]
         else:
-            parts.append(Quantity(name, "").heading if place == len(steps) - 1 else Quantity(name, "").words)
-            parts[-1] = recorded(parts[-1])
+            quantity, is_last = Quantity(name, ""), place == len(steps) - 1
+            parts.append(recorded(quantity.words) + (f" [{quantity.unit}]" if quantity.unit and is_last else ""))
     return ": ".join(parts)
 
 
@@ -95,6 +100,8 @@ def value_in_words(text: str) -> str:
     >>> value_in_words('{"id": "ed250", "name": "ED2…'), value_in_words('"3"'), value_in_words("bypassed")
     ('id ed250, …', '3', 'bypassed')
     """
+    if text in ("null", "~"):
+        return tr("left out")
     whole, more = text.removesuffix(CUT), text.endswith(CUT)
     if text[:1] not in ("{", "[", '"'):
         return text
@@ -103,6 +110,34 @@ def value_in_words(text: str) -> str:
     except ValueError:
         return text
     return _told(value) + (f", {CUT}" if more else "")
+
+
+def value_at(scenario: Scenario, path: str) -> str | None:
+    """Return the value that an input has, as it stands behind the ``=`` of a change; of several items one that all share.
+
+    None where there is none or it is left out, or where items differ.
+    """
+    found: list[Any] = [scenario.model_dump(mode="json", by_alias=True)]
+    for match in _STEP.finditer(path):
+        found = [part for one in found for part in _below(one, match["name"], match["key"])]
+    texts = {text_of(one) for one in found}
+    if texts == {"null"}:
+        head, dot, last = path.rpartition(".")
+        return value_at(scenario, f"{head}.{SAME_AS[last]}") if dot and last in SAME_AS else None
+    return texts.pop() if len(texts) == 1 else None
+
+
+def _below(container: Any, name: str | None, key: str | None) -> list[Any]:
+    """Return what a step of a path leads to."""
+    step = name or key or ""
+    if isinstance(container, dict):
+        return [container[step]] if step in container else []
+    if not isinstance(container, list):
+        return []
+    if step == "*":
+        return container
+    own = [item for item in container if isinstance(item, dict) and item.get("id") == step]
+    return own or (container[int(step) : int(step) + 1] if step.isdecimal() else [])
 
 
 def _item(name: str, key: str) -> str:

@@ -7,11 +7,11 @@ from typing import Any
 
 import pandas as pd
 
-from tractionpower.model.quantity import Quantity
 from tractionpower.model.scenario import Scenario
-from tractionpower.reporting.texts import mark, recorded
+from tractionpower.reporting.facts.input_words import bare_unit, names_of_inputs, value_at, value_in_words
+from tractionpower.reporting.texts import decimal, mark, recorded
 from tractionpower.results.results import Results
-from tractionpower.studies.sweep.cases import number_of, short_names
+from tractionpower.studies.sweep.cases import number_of
 
 WORDS = {
     "lowest_voltage_v": mark("lowest voltage [V]"),
@@ -86,9 +86,36 @@ class SweepData:
 
     @cached_property
     def names(self) -> dict[str, str]:
-        """Short names of the paths, with the unit of a quantity."""
-        short = short_names(self.keys)
-        return {path: _heading(name) for path, name in short.items()}
+        """What the paths are called, with the unit of a quantity."""
+        return names_of_inputs(self.keys)
+
+    @cached_property
+    def of_base(self) -> dict[str, str]:
+        """Values of the paths in the base, where it has one."""
+        found = {path: value_at(self.scenario, path) for path in self.keys}
+        return {path: value for path, value in found.items() if value is not None}
+
+    @property
+    def short_names(self) -> list[str]:
+        """What the paths are called, without what they belong to where all can be told apart so."""
+        names = list(self.names.values())
+        lasts = [name.rpartition(": ")[2] for name in names]
+        return lasts if len(set(lasts)) == len(lasts) else names
+
+    def subject(self, case: str, *, short: bool = False) -> str:
+        """Return in words what a case sets; nothing for one that sets nothing. `short`: without what inputs belong to."""
+        if case not in self.changes.index:
+            return ""
+        brief = short and self.short_names != list(self.names.values())
+        told = ((path, value) for path, value in self.changes.loc[case].items() if isinstance(value, str))
+        return ", ".join(self.setting(path, value, short=brief) for path, value in told)
+
+    def setting(self, path: Any, value: str, *, short: bool = False) -> str:
+        """Return what a path is set to, such as ``substation A: units in service 1``; `short` leaves out what it belongs to."""
+        name, unit = bare_unit(self.names[str(path)])
+        name = name.rpartition(": ")[2] if short else name
+        told = recorded(value_in_words(value)) if number_of(value) is None else decimal(value)
+        return f"{name} {told} {unit}".strip()
 
     def figures(self, most: int) -> list[str]:
         """Return the figures that differ between cases, the most telling first; at most `most`."""
@@ -101,15 +128,3 @@ def _sorted(values: list[str]) -> list[str]:
     if any(number is None for number in numbers):
         return list(values)
     return [value for _, value in sorted(zip((number or 0.0 for number in numbers), values, strict=True))]
-
-
-def _heading(name: str) -> str:
-    """Return a short name with the unit in brackets.
-
-    >>> _heading("A internal_resistance_ohm"), _heading("C state")
-    ('A internal resistance [Ω]', 'C state')
-    """
-    item, _, last = name.rpartition(" ")
-    quantity = Quantity(last, "")
-    unit = f" [{quantity.unit}]" if quantity.unit else ""
-    return name if "." in name else f"{item} {recorded(quantity.words)}{unit}".strip()

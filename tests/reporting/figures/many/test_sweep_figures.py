@@ -57,7 +57,7 @@ def test_one_input_is_drawn_as_curves_over_its_rising_values():
     assert list(line.get_xdata()) == [0.05, 0.1, 0.3]
     assert list(line.get_ydata()) == pytest.approx([2950.0, 2900.0, 2700.0])
     assert low.get_lines()[1].get_ydata()[0] == pytest.approx(2880.0)  # the base
-    assert loss.get_xlabel() == "A internal resistance [Ω]"
+    assert loss.get_xlabel() == "substation A: internal resistance [Ω]"
 
 
 def test_a_refused_value_is_marked():
@@ -67,7 +67,11 @@ def test_a_refused_value_is_marked():
 
 
 def test_two_inputs_are_drawn_as_maps_with_their_values():
-    (figure,) = sweep_figures(results_of(R, STATE, refused=("01",)), SCENARIO).values()
+    drawn = sweep_figures(results_of(R, STATE, refused=("01",)), SCENARIO)
+    assert set(drawn) == {"sweep_maps", "sweep_curves", "sweep_differences"}
+    figure, curves = drawn["sweep_maps"], drawn["sweep_curves"].axes[0].get_lines()
+    assert [line.get_label() for line in curves[:2]] == ["section cabin C: state closed", "section cabin C: state open"]
+    assert list(curves[0].get_xdata()) == [0.05, 0.1]  # the third was refused
     maps = [axes for axes in figure.axes if axes.images]
     shown = np.ma.filled(maps[0].images[0].get_array(), np.nan)
     assert shown.shape == (2, 3)  # two states down, three resistances across
@@ -99,7 +103,7 @@ def test_nothing_is_drawn_where_nothing_differs():
 def test_texts_that_are_values_keep_their_order():
     data = SweepData(results_of(R, STATE), SCENARIO)
     assert data.keys == {R.path: ["0.05", "0.1", "0.3"], STATE.path: ["closed", "open"]}
-    assert data.names[STATE.path] == "C state"
+    assert data.names[STATE.path] == "section cabin C: state"
     assert list(data.changes.columns) == [R.path, STATE.path]
 
 
@@ -107,12 +111,13 @@ def test_all_reports_and_the_values_in_them(tmp_path):
     mpl.rcdefaults()
     results = results_of(R, STATE, refused=("03",))
     paths = write_reports(results, SCENARIO, tmp_path)
-    assert {path.name for path in paths} == {"sweep_maps.png", "report.xlsx"}
+    assert {path.name for path in paths} == {"sweep_maps.png", "sweep_curves.png", "sweep_differences.png", "report.xlsx"}
     book = load_workbook(tmp_path / "report.xlsx", data_only=True)
     rows = {row["case"]: row for row in read_table(book["Variants"])}
     assert len(rows) == 7
-    assert rows["02"]["A internal resistance [Ω]"] == 0.3
-    assert rows["02"]["C state"] == "open"
+    assert rows["02"]["substation A: internal resistance [Ω]"] == 0.3
+    assert rows["base"]["substation A: internal resistance [Ω]"] == SCENARIO.supply.substations[0].internal_resistance_ohm
+    assert rows["02"]["section cabin C: state"] == "open"
     assert rows["02"]["lowest voltage [V]"] == pytest.approx(2700.0)
     assert rows["03"]["reason"] == "=because"
     assert rows["03"]["lowest voltage [V]"] is None
@@ -123,6 +128,20 @@ def test_all_reports_and_the_values_in_them(tmp_path):
     written = load_workbook(tmp_path / "report.xlsx")["Variants"]
     assert [cell.data_type for line in written for cell in line if cell.value == "=because"] == ["s"]
     assert any("1 refused" in text for text in texts(book["Cover"]))
-    (tmp_path / "figures" / "sweep_curves.png").write_bytes(b"old")
+    (tmp_path / "figures" / "sweep_scatter.png").write_bytes(b"old")
     write_reports(results, SCENARIO, tmp_path)
-    assert not (tmp_path / "figures" / "sweep_curves.png").exists()
+    assert not (tmp_path / "figures" / "sweep_scatter.png").exists()
+
+
+def test_lowest_voltages_of_the_cases_are_laid_over_each_other():
+    results = results_of(R)
+    rows = [
+        {"case": case, "track": "1", "km": km, "lowest_voltage_v": 3000.0 - n}
+        for n, case in enumerate(("base", "01", "02", "03"))
+        for km in (1.0, 1.5)
+    ]
+    results._source["case_profile"] = rows_table("case_profile", rows)
+    figure = sweep_figures(results, SCENARIO)["sweep_voltage"]
+    lines = {line.get_label(): list(line.get_ydata()) for line in figure.axes[0].get_lines()}
+    assert lines["base"] == [3000.0, 3000.0]
+    assert lines["02: internal resistance 0.05 Ω"] == [2998.0, 2998.0]

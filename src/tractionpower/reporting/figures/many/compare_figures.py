@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -69,8 +69,25 @@ def voltage_along_line(results: Results, scenario: Scenario, folders: Sequence[s
     """Draw the lowest voltage along each track, one line for each folder."""
     if "compare_profile" not in results.tables:
         return None
-    profile = results.table("compare_profile").dropna(subset=["lowest_voltage_v"])
-    profile = profile.astype({"track": str, "folder": str, "where": str})
+    profile = results.table("compare_profile").astype({"track": str, "folder": str, "where": str})
+    return lowest_along_line(profile, scenario, {folder: folder for folder in folders}, title)
+
+
+def lowest_along_line(profile: pd.DataFrame, scenario: Scenario, names: Mapping[str, str], title: str) -> Figure | None:
+    """Draw the lowest voltage along each track, one line for each of `names`, which gives the words of the legend.
+
+    Parameters
+    ----------
+    profile
+        Columns ``folder`` (a key of `names`), ``track``, ``km``, ``where`` and ``lowest_voltage_v`` [V].
+    scenario
+        Whose line and limits it is.
+    names
+        What is drawn, in its order.
+    title
+        Name of the study.
+    """
+    profile = profile.dropna(subset=["lowest_voltage_v"])
     lowest = profile.groupby("track")["lowest_voltage_v"].min().sort_values(kind="stable")
     places = LinePlaces(scenario)
     known = {track.id for track in scenario.line.tracks}
@@ -85,8 +102,8 @@ def voltage_along_line(results: Results, scenario: Scenario, folders: Sequence[s
         for axes, track in zip(panels_of_lines(figure, lines), tracks, strict=True):
             line = next(line for line in lines if track in line)
             own = profile[profile["track"] == track]
-            for row, folder in enumerate(folders):
-                _draw_lowest(axes, own[own["folder"] == folder], folder, row)
+            for row, (folder, name) in enumerate(names.items()):
+                _draw_lowest(axes, own[own["folder"] == folder], name, row)
             axes.tick_params(labelsize=8)
             axes.set_ylabel(tr("{tracks}\nlowest voltage [V]", tracks=told([track])), fontsize=8)
             axes.set_ylim(*voltage_range(float(profile["lowest_voltage_v"].min()), float(profile["lowest_voltage_v"].max())))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,19 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.sweep_data import WORDS, SweepData
 from tractionpower.reporting.figures.base.axes import draw_limits
 from tractionpower.reporting.figures.base.labels import shortened
-from tractionpower.reporting.figures.base.style import BLUE, GREY, INK, PAGE, SMALLEST, STYLE, VERMILION, new_figure, save_all
+from tractionpower.reporting.figures.base.style import (
+    BLUE,
+    COLOURS,
+    GREY,
+    INK,
+    PAGE,
+    SMALLEST,
+    STYLE,
+    VERMILION,
+    new_figure,
+    save_all,
+)
+from tractionpower.reporting.figures.many.compare_figures import lowest_along_line
 from tractionpower.reporting.figures.supply.panels import LETTER_7, head, legend_below, once
 from tractionpower.reporting.texts import decimal, number, tr
 from tractionpower.results.results import Results
@@ -30,6 +43,12 @@ MOST_BARS = 25
 
 MOST_LETTERS = 40
 """Letters of a name of a case or an input."""
+
+MOST_IN_LEGEND = 70
+"""Letters of a case in a legend."""
+
+MARKS = ("o", "s", "^", "D", "v", "P", "X")
+"""What tells lines apart without colour."""
 
 MOST_VALUE = 20
 """Letters of a value below an axis."""
@@ -47,7 +66,13 @@ VOLTAGES = ("lowest_voltage_v",)
 """Figures that limits of the voltage are drawn with."""
 
 
-NAMES = ("sweep_curves", "sweep_maps", "sweep_differences", "sweep_scatter")
+MOST_LINES = 7
+"""Values of a second input that have lines of their own."""
+
+MOST_PROFILES, MOST_OF_END = 7, 3
+"""Cases whose voltages are laid over each other; with more, the base and so many of the lowest and of the highest."""
+
+NAMES = ("sweep_curves", "sweep_maps", "sweep_voltage", "sweep_differences", "sweep_scatter")
 
 
 def write_sweep_figures(results: Results, scenario: Scenario, folder: Path) -> list[Path]:
@@ -60,23 +85,55 @@ def sweep_figures(results: Results, scenario: Scenario) -> dict[str, Figure]:
     data = SweepData(results, scenario)
     if not data.figures(1):
         return {}
-    sets = data.changes.notna().sum(axis=1)
-    is_grid = len(data.changes.columns) == 2 and bool((sets == 2).all()) and not data.changes.duplicated().any()
     with mpl.rc_context(STYLE):
-        if len(data.changes.columns) == 1:
-            return {"sweep_curves": _curves(data)}
-        if is_grid and len(data.changes) == np.prod([len(values) for values in data.keys.values()]):
-            return {"sweep_maps": _maps(data)}
-        drawn = {} if data.base is None else {"sweep_differences": _bars(data)}
-        numeric = [path for path in data.paths if all(number_of(value) is not None for value in data.changes[path].dropna())]
-        if numeric and len(data.changes) >= FEWEST_POINTS:
-            drawn["sweep_scatter"] = _clouds(data, numeric[:MOST_KEYS])
-        return drawn
+        drawn = {name: figure for name, figure in _drawn(data) if figure is not None}
+    voltage = _voltage(data)
+    return drawn if voltage is None else drawn | {"sweep_voltage": voltage}
 
 
-def _curves(data: SweepData) -> Figure:
-    """Draw figures over the values of the one input that is varied; the base is a dashed line."""
-    path = data.paths[0]
+def _drawn(data: SweepData) -> Iterator[tuple[str, Figure | None]]:
+    """Yield names and figures: over one input or two, else differences from the base and clouds."""
+    sets, paths = data.changes.notna().sum(axis=1), data.paths
+    if len(paths) == 1:
+        yield "sweep_curves", _curves(data, paths[0])
+        return
+    is_grid = len(paths) == 2 and bool((sets == 2).all()) and not data.changes.duplicated().any()
+    if is_grid and len(data.changes) == np.prod([len(values) for values in data.keys.values()]):
+        along, across = sorted(paths, key=lambda path: (not _is_numeric(data.keys[path]), -len(data.keys[path])))
+        yield "sweep_maps", _maps(data)
+        if _is_numeric(data.keys[along]) and len(data.keys[across]) <= MOST_LINES:
+            yield "sweep_curves", _curves(data, along, across)
+    yield "sweep_differences", None if data.base is None else _bars(data)
+    if is_grid:
+        return
+    numeric = [path for path in paths if _is_numeric(data.changes[path].dropna())]
+    if numeric and len(data.changes) >= FEWEST_POINTS:
+        yield "sweep_scatter", _clouds(data, numeric[:MOST_KEYS])
+
+
+def _is_numeric(values: Iterable[str]) -> bool:
+    return all(number_of(value) is not None for value in values)
+
+
+def _voltage(data: SweepData) -> Figure | None:
+    """Draw the lowest voltages along the line of the cases over each other."""
+    if "case_profile" not in data.results.tables:
+        return None
+    order = data.measured.sort_values("lowest_voltage_v", kind="stable")["case"].tolist()
+    base = [] if data.base is None else [str(data.base["case"])]
+    others = [case for case in order if case not in base]
+    if len(base) + len(others) > MOST_PROFILES:
+        others = [*others[:MOST_OF_END], *others[-MOST_OF_END:]]
+    profile = data.results.table("case_profile").rename(columns={"case": "folder"}).assign(where="pantograph")
+    words = {
+        case: tr("base") if case in base else f"{case}: {data.subject(case, short=True)}" for case in [*base, *sorted(others)]
+    }
+    names = {case: shortened(text, MOST_IN_LEGEND) for case, text in words.items()}
+    return lowest_along_line(profile.astype({"track": str, "folder": str}), data.scenario, names, data.title)
+
+
+def _curves(data: SweepData, path: str, across: str = "") -> Figure:
+    """Draw figures over the values of one input, a line for each value of another; the base is a dashed line."""
     values = data.keys[path]
     numbers = [number_of(value) for value in values]
     is_numeric = all(each is not None for each in numbers)
@@ -86,11 +143,15 @@ def _curves(data: SweepData) -> Figure:
     panels = list(np.atleast_1d(figure.subplots(len(shown), 1, sharex=True)))
     rows = data.measured.set_index("case").join(data.changes, how="inner")
     rows = rows.assign(_at=[float(at[value] or 0.0) for value in rows[path]]).sort_values("_at", kind="stable")
+    lines = [(data.setting(across, value), rows[rows[across] == value]) for value in data.keys[across]] if across else []
     for axes, name in zip(panels, shown, strict=True):
-        style: Any = {"marker": "o", "markersize": 4.5, "linewidth": 1.5 if is_numeric else 0.0}
-        axes.plot(rows["_at"], rows[name], color=BLUE, label=tr("variants"), **style)
+        for row, (words, own) in enumerate(lines or [(tr("variants"), rows)]):
+            colour = COLOURS[row % len(COLOURS)] if across else BLUE
+            style: Any = {"marker": MARKS[row % len(MARKS)], "markersize": 4.5, "linewidth": 1.5 if is_numeric else 0.0}
+            axes.plot(own["_at"], own[name], color=colour, label=words, **style)
         if data.base is not None and pd.notna(data.base[name]):
-            axes.axhline(float(data.base[name]), color=VERMILION, linestyle=(0, (5, 3)), linewidth=1.3, label=tr("base"))
+            colour = INK if across else VERMILION
+            axes.axhline(float(data.base[name]), color=colour, linestyle=(0, (5, 3)), linewidth=1.3, label=tr("base"))
         axes.tick_params(labelsize=8)
         axes.set_ylabel(tr(WORDS[name]), fontsize=8)
         if name in VOLTAGES:
@@ -102,7 +163,11 @@ def _curves(data: SweepData) -> Figure:
         turned: Any = {"rotation": 45, "ha": "right", "rotation_mode": "anchor"} if wide else {}
         panels[-1].set_xticks([float(at[value] or 0.0) for value in values], [decimal(text) for text in texts], **turned)
     panels[-1].set_xlabel(shortened(data.names[path], 90), fontsize=8)
-    head(figure, f"{data.title}: {shortened(data.names[path], 90)}")
+    if across:
+        both = {"first": shortened(data.names[path], 60), "second": shortened(data.names[across], 60)}
+        head(figure, tr("{study}: {first} and {second}", study=data.title, **both))
+    else:
+        head(figure, f"{data.title}: {shortened(data.names[path], 90)}")
     legend_below(figure, *once(panels))
     return figure
 
@@ -199,10 +264,10 @@ def _bars(data: SweepData) -> Figure:
         axes.grid(visible=False, axis="y")
         axes.set_axisbelow(True)
     panels[0].set_yticks(range(len(order)), labels, fontsize=SMALLEST)
-    panels[0].set_ylabel(shortened(told, 100), fontsize=SMALLEST)
     left = len(wide) - len(order)
     more = tr("; {count} cases that differ less are not drawn", count=left) if left else ""
-    head(figure, tr("{study}: differences from the base (red: worse, blue: better)", study=data.title) + more)
+    title = tr("{study}: differences from the base (red: worse, blue: better)", study=data.title) + more
+    head(figure, f"{title}; {told}" if told != tr("case") else title)
     return figure
 
 
@@ -211,10 +276,9 @@ def _labels(data: SweepData, cases: list[str]) -> tuple[list[str], str]:
     changes = data.changes.loc[cases]
     if changes.notna().all(axis=None):
         texts = [", ".join(decimal(_short(str(value))) for value in changes.loc[case]) for case in cases]
-        told = tr("case: {inputs}", inputs=", ".join(data.names[path] for path in data.paths))
+        told = tr("case: {inputs}", inputs=", ".join(data.short_names))
     else:
-        subjects = dict(zip(data.cases["case"], data.cases["subject"], strict=True))
-        texts, told = [subjects[case] for case in cases], tr("case")
+        texts, told = [data.subject(case, short=True) for case in cases], tr("case")
     labels = [f"{case}: {text}" for case, text in zip(cases, texts, strict=True)]
     return [shortened(text, MOST_LETTERS) for text in labels], told
 

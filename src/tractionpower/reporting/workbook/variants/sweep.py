@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.facts.sweep_data import SweepData
-from tractionpower.reporting.texts import mark, number, recorded, tr, trn
+from tractionpower.reporting.texts import mark, number, tr, trn
 from tractionpower.reporting.workbook.common import acceptance, assumptions, definitions, evidence, inputs, not_covered
 from tractionpower.reporting.workbook.common.cover import MOST_NOTES, Said, fill_in
 from tractionpower.reporting.workbook.frame.book import TITLE_LENGTH, Book
@@ -43,7 +43,8 @@ def build(results: Results, scenario: Scenario, report: Report) -> Book:
 
 def _tables(book: Book, data: SweepData) -> None:
     """Add the sheets of the cases."""
-    cases, cells = Cases(data), Cells()
+    cases = Cases(data)
+    cells = Cells(cases)
     variants = add_variants(book, data, cases, cells)
     add_figures(book, data, cases, cells)
     others = book.pages.pop()  # formulas of all sheets ask for its ranges, but it is the last that is read
@@ -67,20 +68,20 @@ def _head(data: SweepData) -> Iterator[Said]:
         shown = ", ".join(values[:12])
         if len(values) > 12:
             shown = tr("{values}, ... ({count} values)", values=shown, count=len(values))
-        yield tr("Varied"), f"{path}: {shown}", "wrapped"
+        yield tr("Varied"), f"{data.names[path]}: {shown}", "wrapped"
     if sweep.get("sample"):
         count, seed = sweep["sample"]["count"], sweep["sample"]["seed"]
         yield tr("Sample"), tr("{count} draws with seed {seed}.", count=count, seed=seed), "wrapped"
 
 
 def _verdicts(data: SweepData) -> Iterator[Said]:
-    subjects = dict(zip(data.cases["case"], data.cases["subject"], strict=True))
     extremes = data.run["sweep"]["extremes"]
     for name in differing_figures(data)[:MOST_SAID]:
         ends = (
             tr(
                 "{end} {value} (case {case}: {subject})",
-                end=tr(ENDS[word]), value=number(one["value"]), case=one["case"], subject=recorded(subjects.get(one["case"], "")),
+                end=tr(ENDS[word]), value=number(one["value"]), case=one["case"],
+                subject=data.subject(str(one["case"])) or tr("nothing is changed"),
             )
             for word, one in extremes[name].items()
         )  # fmt: skip

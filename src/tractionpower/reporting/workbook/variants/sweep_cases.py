@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,7 +15,7 @@ from tractionpower.reporting.texts import tr
 from tractionpower.reporting.workbook.common.acceptance import LEAST_TOLERANCE, MET, VIOLATED, tolerance_name
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL
-from tractionpower.reporting.workbook.frame.page import Block, Page
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 from tractionpower.reporting.workbook.variants.sweep_words import (
     higher_is_better,
     ranking_figure,
@@ -25,27 +26,11 @@ from tractionpower.studies.sweep.differences import NOT_JUDGED
 
 NUMBER, CASE = "no.", "case"
 
+_SEARCHED = re.compile(r'[*?~"{}]|^[=<>]|^$|.{200}')
+"""Names that formulas would not find as they are written."""
+
 _SHARED = ("useful voltage", "high voltage")
 """Words of what is violated that several checks share."""
-
-
-@dataclass
-class Cells:
-    """Where the figures of the cases stand: names of their ranges, and of the numbers of the cases beside them."""
-
-    ranges: dict[str, str] = field(default_factory=dict)
-    numbers: dict[str, str] = field(default_factory=dict)
-
-    def define(self, book: Book, page: Page, block: Block, sheet: str, figures: Sequence[str]) -> None:
-        """Name the columns of a block that holds all cases."""
-        numbers = book.define(f"{sheet}_no", page, block.cells("no"))
-        for name in figures:
-            self.ranges[name] = book.define(f"case_{name}", page, block.cells(name))
-            self.numbers[name] = numbers
-
-    def of(self, name: str, number: str = "{no}") -> str:
-        """Return the part of a formula that finds a figure of the case whose number stands in a cell."""
-        return f"INDEX({{{self.ranges[name]}}},MATCH({number},{{{self.numbers[name]}}},0))"
 
 
 class Cases:
@@ -59,6 +44,8 @@ class Cases:
         Limits of the base that a case with figures can be held against.
     words
         For each case with figures the verdict on each of the checks.
+    key
+        Column by which formulas find a case: ``case``, its name, or ``no``.
     """
 
     def __init__(self, data: SweepData) -> None:
@@ -69,6 +56,30 @@ class Cases:
         measured = set(data.measured["case"])
         self.words = {row["case"]: [_word(check, row) for check in self.checks] for row in self.rows if row["case"] in measured}
         self.by_ranking = ranking_figure(data)
+        names = [self.name(row).casefold() for row in self.rows]
+        plain = len(set(names)) == len(names) and not any(_SEARCHED.search(name) for name in names)
+        self.key = "case" if plain else "no"
+
+    def name(self, row: Mapping[Any, Any]) -> str:
+        """Return what a case is called in the language of the report."""
+        return tr("base") if row["kind"] == "base" else str(row["case"])
+
+    def literal(self, number: int) -> str:
+        """Return what formulas find a case by, from its number."""
+        return f'"{self.name(self.rows[number])}"' if self.key == "case" else str(number)
+
+    @property
+    def columns(self) -> list[Column]:
+        """The first columns of a table of cases; a number only where formulas cannot find a case by its name."""
+        return [Column(CASE, "any", 18, "case"), *([] if self.key == "case" else [Column(NUMBER, "0", key="no")])]
+
+    def cells(self, number: int) -> list[Any]:
+        """Return what stands in the first columns for a case."""
+        return [self.name(self.rows[number]), *([] if self.key == "case" else [number])]
+
+    def subject(self, row: Mapping[Any, Any]) -> str:
+        """Return in words what a case sets."""
+        return tr("nothing is changed") if row["kind"] == "base" else self.data.subject(str(row["case"])) or str(row["subject"])
 
     def violated(self, case: str) -> int | None:
         """Return how many limits a case violates, None for one without figures."""
@@ -96,6 +107,28 @@ class Cases:
         return self.violated(row["case"]) or 0, -value if higher_is_better(self.by_ranking) else value
 
 
+@dataclass
+class Cells:
+    """Where the figures of the cases stand: names of their ranges, and of the cases beside them."""
+
+    cases: Cases
+    ranges: dict[str, str] = field(default_factory=dict)
+    beside: dict[str, str] = field(default_factory=dict)
+
+    def define(self, book: Book, page: Page, block: Block, sheet: str, figures: Sequence[str]) -> None:
+        """Name the columns of a block that holds all cases."""
+        key = self.cases.key
+        beside = book.define(f"{sheet}_{key}", page, block.cells(key))
+        for name in figures:
+            self.ranges[name] = book.define(f"case_{name}", page, block.cells(name))
+            self.beside[name] = beside
+
+    def of(self, name: str, number: int | None = None) -> str:
+        """Return the part of a formula that finds a figure of a case by its number; None: of that of the same row."""
+        case = f"{{{self.cases.key}}}" if number is None else self.cases.literal(number)
+        return f"INDEX({{{self.ranges[name]}}},MATCH({case},{{{self.beside[name]}}},0))"
+
+
 def _word(check: Check, row: Mapping[Any, Any], *, told: bool = True) -> str:
     """Return the verdict on a case: as the study told it, or else by the limit of the base."""
     value = row[check.figure]
@@ -119,11 +152,6 @@ def tolerances_of(check: Check) -> tuple[str, str]:
     if check.tolerance < LEAST_TOLERANCE:  # one of rounding, which all verdicts have
         return "0", "0"
     return f"{{{tolerance_name(f'limit_{check.limit}')}}}", value
-
-
-def subject_of(row: Mapping[Any, Any]) -> str:
-    """Return in short what a case sets."""
-    return tr("nothing is changed") if row["kind"] == "base" else str(row["subject"])
 
 
 def shade(block: Block, key: str, name: str) -> None:

@@ -98,17 +98,18 @@ def _over_grid(page: Page, data: SweepData, cases: Cases, cells: Cells, told: tu
     is_number = _numbers(grid.x)
     for name, room in zip(names, rooms, strict=True):
         page.section(tr(heading(name)))
+        lines = [data.setting(grid.across, line, short=True) if grid.across else "" for line in grid.lines]
         columns = [Column(data.names[grid.along], "any", 24, "x")]
-        columns += [Column(line or tr(heading(name)), "0.0", key=f"line{k}") for k, line in enumerate(grid.lines)]
+        columns += [Column(line or tr(heading(name)), "0.0", key=f"line{k}") for k, line in enumerate(lines)]
         check = next((check for check in cases.checks if check.figure == name and check.value), None)
         columns += [Column(BASE, "0.0", key="base"), *([Column(LIMIT, "0.0", key="limit")] if check else [])]
         block = page.table(columns, _grid_rows(cases, cells, grid, name))
-        words = [*grid.lines, tr(BASE), *([tr(LIMIT)] if check else [])]
+        words = [*lines, tr(BASE), *([tr(LIMIT)] if check else [])]
         keys = [column.key for column in columns[1:]]
-        chart = _lines(block, (tr(heading(name)), data.names[grid.along]), keys, words, is_number=is_number)
+        y = title = tr(heading(name))
         if grid.across:
-            chart.title = tr("{figure} for each {input}", figure=tr(heading(name)), input=data.names[grid.across])
-            chart.title.overlay = False
+            title = tr("{figure}, by {input}", figure=y, input=data.names[grid.across])
+        chart = _lines(block, (title, y, data.names[grid.along]), keys, words, is_number=is_number)
         known = [value for row in cases.rows if (value := cases.value(row, name)) is not None]
         fit_axis(chart.y_axis, known, from_zero=not is_number and not name.endswith("_v"))
         if is_number:
@@ -125,20 +126,20 @@ def _grid_rows(cases: Cases, cells: Cells, grid: Grid, name: str) -> Iterator[li
         for other in grid.lines:
             at = grid.case.get((value, other))
             found = None if at is None else cases.value(cases.rows[at], name)
-            line.append(None if found is None else Formula(cells.of(name, str(at)), found))
-        line.append(None if base is None else Formula(cells.of(name, "0"), base))
+            line.append(None if found is None else Formula(cells.of(name, at), found))
+        line.append(None if base is None else Formula(cells.of(name, 0), base))
         yield [*line, *([Formula(limit_cell(check), check.value)] if check else [])]
 
 
-def _lines(block: Block, titles: tuple[str, str], keys: Sequence[str], words: Sequence[str], *, is_number: bool) -> Any:
+def _lines(block: Block, titles: tuple[str, str, str], keys: Sequence[str], words: Sequence[str], *, is_number: bool) -> Any:
     """Return the chart of a table: lines with points over numbers, bars over texts."""
-    y, x = titles
+    title, y, x = titles
     if not is_number:
         own = [key for key in keys if key.startswith("line")]
-        chart = bars(y, y, block, "x", own)
+        chart = bars(title, y, block, "x", own)
         name_series(chart, [word or y for word in words])
         return chart
-    chart = scatter(y, x, y)
+    chart = scatter(title, x, y)
     for number, (key, word) in enumerate(zip(keys, words, strict=True)):
         is_line = key.startswith("line")
         colour = COLOURS[number % len(COLOURS)] if is_line else "CC0000" if key == "limit" else "777777"
@@ -167,7 +168,7 @@ def _cloud(variants: Block, cases: Cases, key: tuple[str, int], name: str) -> An
     """Return points of a figure over a number that is varied; the base, which sets nothing, has none."""
     words, number = key
     chart = scatter(tr("{figure} over {input}", figure=tr(heading(name)), input=words), words, tr(heading(name)), legend=False)
-    x = variants.headings[2 + number]
+    x = variants.headings[len(cases.columns) + number]
     draw(chart, variants, Line(name, x, name, variants.first + 1, variants.last, COLOURS[0]))
     show_points(chart.series[-1], 0, COLOURS[0], line=False)
     own = [cases.data.changes.loc[row["case"]].iloc[number] for row in cases.rows[1:] if row["case"] in cases.words]

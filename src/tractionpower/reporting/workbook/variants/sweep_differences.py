@@ -10,7 +10,7 @@ from tractionpower.reporting.texts import tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column
-from tractionpower.reporting.workbook.variants.sweep_cases import CASE, NUMBER, Cases, Cells, shade, subject_of
+from tractionpower.reporting.workbook.variants.sweep_cases import Cases, Cells, shade
 from tractionpower.reporting.workbook.variants.sweep_words import (
     differing_figures,
     heading,
@@ -48,16 +48,16 @@ def _best_row(cases: Cases, cells: Cells, name: str) -> list[Any]:
     area = f"{{{cells.ranges[name]}}}"
     base = cases.value(cases.rows[0], name) if cases.rows[0]["kind"] == "base" else None
     better = tr("not judged") if name in NOT_JUDGED else tr("more") if higher_is_better(name) else tr("less")
-    line: list[Any] = [tr(heading(name)), better, None if base is None else Formula(cells.of(name, "0"), base)]
+    line: list[Any] = [tr(heading(name)), better, None if base is None else Formula(cells.of(name, 0), base)]
     ends = []
     for key, choose in (("best", best), ("worst", worst)):
         value = choose(value for value, _ in known)
         number = next(number for one, number in known if one == value)
         row = cases.rows[number]
-        words = tr("base") if row["kind"] == "base" else str(row["case"])
+        words = cases.name(row)
         function = "MAX" if choose is max else "MIN"
         case = f"INDEX({{variants_case}},MATCH({{{key}}},{area},0))"
-        line += [Formula(f"{function}({area})", value), Formula(case, words), subject_of(row)]
+        line += [Formula(f"{function}({area})", value), Formula(case, words), cases.subject(row)]
         ends.append(value)
     spread = None
     if base:
@@ -75,7 +75,7 @@ def add_differences(book: Book, data: SweepData, cases: Cases, cells: Cells) -> 
             "Differences" if count == 1 else f"Differences {count}", "Differences of the figures from those of the base"
         )
         page.note("Value of the case less that of the base, and in per cent of that of the base; formulas on the other sheets.")
-        columns = [Column(CASE, "any", 18), Column(NUMBER, "0", key="no"), Column("what it sets", "beside", 44)]
+        columns = [*cases.columns, Column("what it sets", "beside", 44)]
         for name in some:
             columns.append(Column(heading(name), style_of(name), key=name))
             columns.append(Column(f"{tr(heading(name)).split(' [')[0]} [%]", "0.0"))
@@ -89,7 +89,7 @@ def _difference_row(cases: Cases, cells: Cells, names: Sequence[str], number: in
     row = cases.rows[number]
     if row["case"] not in cases.words:
         return []
-    line: list[Any] = [row["case"], number, subject_of(row)]
+    line: list[Any] = [*cases.cells(number), cases.subject(row)]
     for name in names:
         base, value = cases.value(cases.rows[0], name), cases.value(row, name)
         if base is None or value is None:

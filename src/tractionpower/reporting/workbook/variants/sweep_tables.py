@@ -9,6 +9,7 @@ from openpyxl.formatting.rule import FormulaRule
 from openpyxl.styles import Font
 
 from tractionpower.reporting.facts.device_words import device_told
+from tractionpower.reporting.facts.input_words import value_in_words
 from tractionpower.reporting.facts.sweep_data import SweepData
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.common.acceptance import BY_LIMIT, MET, OPEN, VIOLATED, Accepted, colour_words
@@ -16,16 +17,7 @@ from tractionpower.reporting.workbook.common.verdicts import Comparison
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column
-from tractionpower.reporting.workbook.variants.sweep_cases import (
-    CASE,
-    NUMBER,
-    Cases,
-    Cells,
-    limit_cell,
-    shade,
-    subject_of,
-    tolerances_of,
-)
+from tractionpower.reporting.workbook.variants.sweep_cases import Cases, Cells, limit_cell, shade, tolerances_of
 from tractionpower.reporting.workbook.variants.sweep_words import (
     STATUSES,
     heading,
@@ -65,7 +57,8 @@ def add_variants(book: Book, data: SweepData, cases: Cases, cells: Cells) -> Blo
     page = book.page("Variants", "Variants: what each case sets, and what came of it")
     page.note(
         "The base is the study as it is. A case sets the inputs whose values stand in its row; an empty cell leaves an input as"
-        " it is in the base. Red is worse, green better; the best of each figure is bold and underlined."
+        " it is in the base; in the base itself it is left out, or differs from item to item. Red is worse, green better; the"
+        " best of each figure is bold and underlined."
     )
     if cases.by_ranking:
         page.note(
@@ -80,7 +73,7 @@ def add_variants(book: Book, data: SweepData, cases: Cases, cells: Cells) -> Blo
         sets = [Column("what it sets", "beside", 48)]
     odd = set(data.cases["status"]) != {"complete"}
     columns = [
-        Column(CASE, "any", 18, "case"), Column(NUMBER, "0", key="no"), *sets,
+        *cases.columns, *sets,
         *([Column("status", "beside", 12)] if odd else []),
         Column("verdict", "beside", 12, "verdict"), Column("limits violated", "0", key="violated"),
         *([Column("rank", "0", key="rank")] if cases.by_ranking else []),
@@ -90,7 +83,8 @@ def add_variants(book: Book, data: SweepData, cases: Cases, cells: Cells) -> Blo
     lines = (_case_row(cases, row, (paths, figures, number)) for number, row in enumerate(cases.rows))
     block = page.table(columns, ([*line] for line in lines), frozen=True)
     cells.define(book, page, block, "variants", figures)
-    book.define("variants_case", page, block.cells("case"))
+    if cases.key != "case":
+        book.define("variants_case", page, block.cells("case"))
     book.define("case_violated", page, block.cells("violated"))
     colour_words(page.sheet, block.cells("verdict"))
     for name in figures:
@@ -110,11 +104,10 @@ def _figure(row: Mapping[Any, Any], name: str) -> Any:
 def _case_row(cases: Cases, row: Mapping[Any, Any], told: tuple[list[str], list[str], int]) -> Iterator[Any]:
     paths, figures, number = told
     data, case = cases.data, row["case"]
-    yield tr("base") if row["kind"] == "base" else case
-    yield number
-    own = data.changes.loc[case] if case in data.changes.index else {}
+    yield from cases.cells(number)
+    own = data.of_base if row["kind"] == "base" else data.changes.loc[case] if case in data.changes.index else {}
     if len(paths) > MOST_PATHS:
-        yield subject_of(row)
+        yield cases.subject(row)
     else:
         yield from (_value(own.get(path)) for path in paths)
     odd = set(data.cases["status"]) != {"complete"}
@@ -126,7 +119,7 @@ def _case_row(cases: Cases, row: Mapping[Any, Any], told: tuple[list[str], list[
     else:
         word = f'IF(ISNUMBER({{violated}}),IF({{violated}}>0,"{tr(VIOLATED)}","{tr(MET)}"),"{tr(OPEN)}")'
         yield Formula(word, tr(VIOLATED if count else MET))
-        yield Formula("INDEX({verdicts_count},MATCH({no},{verdicts_no},0))", count)
+        yield Formula(f"INDEX({{verdicts_count}},MATCH({{{cases.key}}},{{verdicts_{cases.key}}},0))", count)
     if cases.by_ranking:
         rank = cases.rank(row)
         yield None if rank is None else Formula(_rank_formula(cases.by_ranking), rank)
@@ -148,14 +141,14 @@ def _path_style(data: SweepData, path: str) -> str:
 
 def _value(text: Any) -> Any:
     number = number_of(text) if isinstance(text, str) else None
-    return number if number is not None else text if isinstance(text, str) else None
+    return number if number is not None else recorded(value_in_words(text)) if isinstance(text, str) else None
 
 
 def add_figures(book: Book, data: SweepData, cases: Cases, cells: Cells) -> None:
     """Add the sheet of the other figures of the cases, and of where and when all figures came about."""
     page = book.page("All figures", "All figures of the cases, with where and when they came about")
     page.note("Figures of sheet Variants stand there; here is where they came about, and all others.")
-    main, columns, names = main_figures(data), [Column(CASE, "any", 18), Column(NUMBER, "0", key="no")], []
+    main, columns, names = main_figures(data), cases.columns, []
     for name in (*main, *(name for name in shown_figures(data) if name not in main)):
         if name not in main:
             columns.append(Column(heading(name), style_of(name), key=name))
@@ -163,10 +156,7 @@ def add_figures(book: Book, data: SweepData, cases: Cases, cells: Cells) -> None
         for beside, words, style in PLACES.get(name, ()):
             columns.append(Column(words, style, 18, beside))
             names.append(beside)
-    lines = (
-        [tr("base") if row["kind"] == "base" else row["case"], number, *(_figure(row, name) for name in names)]
-        for number, row in enumerate(cases.rows)
-    )
+    lines = ([*cases.cells(number), *(_figure(row, name) for name in names)] for number, row in enumerate(cases.rows))
     block = page.table(columns, lines, frozen=True)
     cells.define(book, page, block, "figures", [name for name in names if name in shown_figures(data)])
     for name in names:
@@ -183,11 +173,11 @@ def add_verdicts(book: Book, cases: Cases, cells: Cells) -> None:
     )
     names = [recorded(check.name) for check in cases.checks]
     columns = [
-        Column(CASE, "any", 18), Column(NUMBER, "0", key="no"), Column("limits violated", "0", key="count"),
+        *cases.columns, Column("limits violated", "0", key="count"),
         *(Column(name[:1].upper() + name[1:], "beside", key=f"check{k}") for k, name in enumerate(names)),
     ]  # fmt: skip
     block = page.table(columns, _verdict_rows(cases, cells), frozen=True)
-    book.define("verdicts_no", page, block.cells("no"))
+    book.define(f"verdicts_{cases.key}", page, block.cells(cases.key))
     book.define("verdicts_count", page, block.cells("count"))
     for k in range(len(cases.checks)):
         colour_words(page.sheet, block.cells(f"check{k}"))
@@ -197,7 +187,6 @@ def add_verdicts(book: Book, cases: Cases, cells: Cells) -> None:
 def _verdict_rows(cases: Cases, cells: Cells) -> Iterator[list[Any]]:
     count = "+".join(f'({{check{k}}}="{tr(VIOLATED)}")' for k in range(len(cases.checks))) or "0"
     for number, row in enumerate(cases.rows):
-        case = tr("base") if row["kind"] == "base" else row["case"]
         if row["case"] not in cases.words:
             continue
         words = cases.words[row["case"]]
@@ -206,7 +195,7 @@ def _verdict_rows(cases: Cases, cells: Cells) -> Iterator[list[Any]]:
             if word and cases.is_own(row, k):
                 text, instead = (_judged(check, cells.of(check.figure), tolerance) for tolerance in tolerances_of(check))
                 shown[k] = Formula(text, tr(word), instead)
-        yield [case, number, Formula(count, words.count(VIOLATED)), *shown]
+        yield [*cases.cells(number), Formula(count, words.count(VIOLATED)), *shown]
 
 
 def _judged(check: Check, found: str, tolerance: str) -> str:
