@@ -56,7 +56,7 @@ def test_verdicts_side_by_side_follow_the_limits_of_the_acceptance_sheet(compare
         assert rows[row["figure"]][f"{row['folder']}: verdict"] == words[row["met"]]
     live = load_workbook(path)
     first = read_table(live["Verdicts"])[0]
-    assert first["limit value"] == "=limit_u_min2"
+    assert "limit_u_min2" in first["limit value"]
     assert first["base: verdict"].startswith("=IF(")
     assert "limit_u_min2" in live.defined_names
     assert len(read_table(live["Acceptance"])) == len(told)
