@@ -13,11 +13,11 @@ KINDS = {
     "unit": mark("Rectifier units"),
     "substation": mark("Substations"),
     "feeder": mark("Feeders"),
-    "return_feeder": mark("Return cables"),
+    "return_feeder": mark("Return feeders"),
     "cabin_feeder": mark("Feeders of section cabins"),
     "switch": mark("Switches"),
-    "contact_line": mark("Contact-line sections"),
-    "rails": mark("Rail sections"),
+    "contact_line": mark("Sections of contact line"),
+    "rails": mark("Sections of rails"),
     "supply_point": mark("Supply points"),
 }
 """Kinds of devices in words, in the order of sheets and figures."""
@@ -39,7 +39,7 @@ def counted_devices(number: int, kind: str) -> str:
     """Return how many devices of a kind there are, in words.
 
     >>> counted_devices(1, "return_feeder"), counted_devices(2, "switch"), counted_devices(1, "rails")
-    ('1 return cable', '2 switches', '1 rail section')
+    ('1 return feeder', '2 switches', '1 section of rails')
     """
     words = KINDS.get(kind, f"{kind.replace('_', ' ')}s").lower()
     if number == 1:

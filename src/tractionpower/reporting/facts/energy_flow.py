@@ -23,7 +23,7 @@ WORDS: dict[str, tuple[str, Kind]] = {
     "commutation": (mark("regulation (E - U) I without heat: commutation drop"), "drop"),
     RETURNED: (mark("fed back by braking trains"), "recovered"),
     "conductor": (mark("heat in contact lines, rails and feeders"), "heat"),
-    "feeders": (mark("heat in feeders and return cables"), "heat"),
+    "feeders": (mark("heat in feeders and return feeders"), "heat"),
     "lines": (mark("heat in contact lines and rails"), "heat"),
     "load": (mark("fixed loads"), "electric"),
     "grid": (mark("fed into the grid by two-way substations"), "electric"),

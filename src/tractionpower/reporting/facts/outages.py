@@ -38,7 +38,7 @@ KINDS_WORDS = {
     "substation": mark("Substations"),
     "feeder": mark("Feeders"),
     "section_cabin": mark("Section cabins"),
-    "contact_line": mark("Contact-line sections"),
+    "contact_line": mark("Sections of contact line"),
     "pair": mark("Pairs of outages"),
     "variant": mark("Variants"),
 }

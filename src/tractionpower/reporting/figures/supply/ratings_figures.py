@@ -145,7 +145,7 @@ def device_load_duration(data: RunData) -> Figure | None:
     groups = [
         (tr("Substations"), rows[rows["kind"] == "substation"]),
         (tr("Feeders and cabin feeders"), rows[rows["kind"].isin(["feeder", "cabin_feeder"])]),
-        (tr("Contact-line sections"), rows[rows["kind"] == "contact_line"]),
+        (tr("Sections of contact line"), rows[rows["kind"] == "contact_line"]),
     ]
     groups = [(words, own) for words, own in groups if len(own)]
     if not groups:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule
@@ -102,6 +102,9 @@ class Accepted:
         By how much it may be beyond the limit, in the same unit.
     met
         What the program says where that is no matter of a number: None lets the formula decide.
+    bare
+        The word, English, where nothing was found since the inputs give nothing to hold it against, such as a contract that can
+        be filled in on its sheet. Such a row counts as no limit until then.
     """
 
     name: str
@@ -117,6 +120,7 @@ class Accepted:
     group: str = ""
     tolerance: float = 0.0
     met: bool | None = None
+    bare: str = ""
 
 
 def add(book: Book) -> None:
@@ -127,8 +131,9 @@ def add(book: Book) -> None:
     page = book.page("Acceptance", "Acceptance: what was found against what is allowed")
     book.pages.insert(1, book.pages.pop())
     page.note(
-        "Yellow cells can be edited: margins, verdicts and the cover follow. A limit whose status is not 'verified' is an"
-        " editable value of the limits table: the check is against that value, which is no statement about a standard."
+        "Yellow cells can be edited, limits and tolerances: margins, verdicts and the cover follow. A limit whose status is not"
+        " 'verified' is an editable value of the limits table: the check is against that value, which is no statement about a"
+        " standard."
     )
     counts_row = _room_for_counts(page)
     block = page.table(_COLUMNS, _lines(rows), frozen=True)
@@ -193,11 +198,11 @@ def accepted_of(verdict: dict[str, Any]) -> Accepted:
 def _lines(rows: Sequence[Accepted]) -> Iterator[tuple[Any, ...]]:
     cells = cell_names(rows)
     known: set[str] = set()
-    for number, (row, cell) in enumerate(zip(rows, cells, strict=True), 1):
+    for number, (row, cell, tolerance) in enumerate(zip(rows, cells, _tolerances(rows), strict=True), 1):
         limit = Formula(same_as(f"{{{cell}}}"), row.limit_value) if cell in known else row.limit_value
         known.add(cell)
         yield (
-            number, recorded(row.name), row.found, tr(_SENSES[row.sense]), limit, row.unit, row.tolerance or None,
+            number, recorded(row.name), row.found, tr(_SENSES[row.sense]), limit, row.unit, tolerance,
             _margin(row), _verdict(row), tr(group_of(row)), place_in_words(row), row.time,
             limit_in_words(row.limit_name), tr(KNOWN_AS.get(row.status, row.status)), recorded(row.source),
         )  # fmt: skip
@@ -227,6 +232,25 @@ def tolerance_name(cell: str) -> str:
     return f"tolerance_{cell.removeprefix('limit_')}"
 
 
+def _is_editable(row: Accepted) -> bool:
+    """Return whether the tolerance of a row stands in a cell."""
+    return row.tolerance >= LEAST_TOLERANCE and row.limit_value is not None
+
+
+def _tolerances(rows: Sequence[Accepted]) -> list[float | Formula | None]:
+    """Return what stands in the column of tolerances: a number that can be edited, or the same as of an earlier row."""
+    found: list[float | Formula | None] = []
+    first: dict[str, float] = {}
+    for row, cell in zip(rows, cell_names(rows), strict=True):
+        is_same = first.get(cell) == row.tolerance
+        if _is_editable(row):
+            first.setdefault(cell, row.tolerance)
+            found.append(Formula(same_as(f"{{{tolerance_name(cell)}}}"), row.tolerance) if is_same else row.tolerance)
+        else:
+            found.append(None)
+    return found
+
+
 def _margin(row: Accepted) -> Formula | None:
     """Return how far the found value is from the limit, negative beyond it."""
     found, limit = number_in(row.found), number_in(row.limit_value)
@@ -238,7 +262,7 @@ def _margin(row: Accepted) -> Formula | None:
 
 def _comparison(row: Accepted) -> Comparison:
     """Return what the cells of a row are held against."""
-    return Comparison("{found}", "{limit}", row.sense, "{tolerance}")
+    return Comparison("{found}", "{limit}", row.sense, "{tolerance}" if _is_editable(row) else f"{row.tolerance:g}")
 
 
 def _verdict(row: Accepted) -> Formula | str:
@@ -246,7 +270,8 @@ def _verdict(row: Accepted) -> Formula | str:
     word = word_of(row)
     if row.limit_value is None or (row.met is not None and word != _by_numbers(row)):
         return tr(word)
-    return Formula(_comparison(row).verdict_by("{margin}", BY_LIMIT), tr(word))
+    words = replace(BY_LIMIT, not_judged=row.bare or OPEN)
+    return Formula(_comparison(row).verdict_by("{margin}", words), tr(word))
 
 
 def word_of(row: Accepted) -> str:
@@ -257,7 +282,7 @@ def word_of(row: Accepted) -> str:
 def _by_numbers(row: Accepted) -> str:
     found, limit = number_in(row.found), number_in(row.limit_value)
     if found is None or limit is None:
-        return OPEN
+        return row.bare or OPEN
     return MET if _comparison(row).holds(found, limit, row.tolerance) else VIOLATED
 
 
@@ -286,8 +311,8 @@ def number_in(value: float | Formula | None) -> float | None:
 def _name_limits(book: Book, page: Page, block: Block, rows: Sequence[Accepted]) -> None:
     """Name the first cell of each limit, and show those that can be edited so; small numbers get more digits."""
     known: set[str] = set()
-    lines = zip(rows, cell_names(rows), digits_of(rows), range(block.first, block.last + 1), strict=True)
-    for row, cell, style, at in lines:
+    lines = zip(rows, cell_names(rows), digits_of(rows), _tolerances(rows), range(block.first, block.last + 1), strict=True)
+    for row, cell, style, tolerance, at in lines:
         limit = number_in(row.limit_value)
         for key in ("found", "margin"):
             page.sheet[block.cell(key, at)]._style = page.styles[style]
@@ -300,6 +325,12 @@ def _name_limits(book: Book, page: Page, block: Block, rows: Sequence[Accepted])
         if is_first:
             known.add(cell)
             book.define(cell, page, block.cell("limit", at))
+        if tolerance is not None:
+            place, is_own = block.cell("tolerance", at), not isinstance(tolerance, Formula)
+            if is_own:
+                page.edit(place, "general", 0.0)
+            if is_own and tolerance_name(cell) not in book.names:
+                book.define(tolerance_name(cell), page, place)
 
 
 def _room_for_counts(page: Page) -> int:

@@ -10,6 +10,7 @@ from tractionpower.reporting.texts import decimal, mark, number, recorded, tr, t
 from tractionpower.reporting.workbook.feasibility.feasibility import verdict_in_words
 from tractionpower.reporting.workbook.frame.facts import STATES, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
+from tractionpower.reporting.workbook.sizing.ratings import BANNER as RATINGS
 from tractionpower.reporting.workbook.sizing.ratings import one_for_each, ratings_in_words
 
 MOST_NOTES = 8
@@ -84,8 +85,8 @@ def run_verdicts(facts: Facts) -> Iterator[Said]:
         yield tr("Feasibility"), sentence, style
     ratings = facts.table("ratings")
     if len(ratings):
-        sentence, style = ratings_in_words(one_for_each(ratings), facts.scenario.sizing.utilisation_percent)
-        yield tr("Ratings"), sentence, style
+        sentence, _ = ratings_in_words(one_for_each(ratings), facts.scenario.sizing.utilisation_percent)
+        yield tr("Ratings"), Formula(f"{{{RATINGS}}}", sentence), "neutral"
     if facts.run.get("status") == "interrupted":
         yield "", tr("The run was interrupted: all this holds for the part that was computed."), "doubt"
 

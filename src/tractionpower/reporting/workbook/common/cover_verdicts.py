@@ -56,7 +56,8 @@ def write_headline(page: Page, rows: Sequence[Accepted]) -> None:
     """Write the verdict in words, large, and the names of what is violated."""
     words = [word_of(row) for row in rows]
     row, counts = page.next, {word: words.count(word) for word in (MET, VIOLATED, OPEN)}
-    state = VIOLATED if counts[VIOLATED] else OPEN if counts[OPEN] or not rows else MET
+    judged = sum(counts.values())
+    state = VIOLATED if counts[VIOLATED] else OPEN if counts[OPEN] or not judged else MET
     page.put(row, 1, "", "label")
     if rows:
         page.put(row, 2, _headline(counts), f"big {_STYLES[state]}")
@@ -64,7 +65,10 @@ def write_headline(page: Page, rows: Sequence[Accepted]) -> None:
         page.put(row, 8, Formula("{acceptance_met}", counts[MET]), f"big {_STYLES[state]}")
         for column, word in ((7, VIOLATED), (8, MET)):
             _show_as(page, row, column, f'0" {_quoted(tr(word))}"')
-        at, rules = f"B{row}:H{row}", ((f"$G${row}>0", RED_FILL), (f"$H${row}={len(rows)}", GREEN_FILL), ("TRUE", AMBER_FILL))
+        at, rules = (
+            f"B{row}:H{row}",
+            ((f"$G${row}>0", RED_FILL), (f"$H${row}>={max(judged, 1)}", GREEN_FILL), ("TRUE", AMBER_FILL)),
+        )
         for condition, colour in rules:
             page.sheet.conditional_formatting.add(at, FormulaRule(formula=[condition], fill=fill(colour), stopIfTrue=True))
     else:
@@ -74,7 +78,7 @@ def write_headline(page: Page, rows: Sequence[Accepted]) -> None:
     page.next += 1
     if rows:
         _named(page, rows, words)
-        _known(page, rows)
+        _known(page, [row for row, word in zip(rows, words, strict=True) if word in counts])
 
 
 def _headline(counts: dict[str, int]) -> Formula:
@@ -83,8 +87,10 @@ def _headline(counts: dict[str, int]) -> Formula:
         tr("{violated} of {all} limits violated"), tr("{met} of {all} limits met, {open} not judged"), tr("All {all} limits met"),
     )  # fmt: skip
     values = {"met": counts[MET], "violated": counts[VIOLATED], "open": counts[OPEN], "all": sum(counts.values())}
-    shown = violated if counts[VIOLATED] else told if counts[OPEN] else met
-    text = f"IF({{acceptance_violated}}>0,{_spoken(violated)},IF({{acceptance_open}}>0,{_spoken(told)},{_spoken(met)}))"
+    none = tr("No limits were judged")
+    shown = violated if counts[VIOLATED] else told if counts[OPEN] else met if counts[MET] else none
+    else_met = f'IF({{acceptance_met}}>0,{_spoken(met)},"{_quoted(none, chr(34) * 2)}")'
+    text = f"IF({{acceptance_violated}}>0,{_spoken(violated)},IF({{acceptance_open}}>0,{_spoken(told)},{else_met}))"
     return Formula(text, shown.format(**values))
 
 
@@ -159,7 +165,7 @@ def write_verdicts(page: Page, rows: Sequence[Accepted]) -> None:
 
 def _listed(rows: Sequence[Accepted]) -> list[int]:
     """Return the numbers of the rows that the cover has room for, from 0: all, or those that are not met first."""
-    order = sorted(range(len(rows)), key=lambda k: (word_of(rows[k]) == MET, k))
+    order = sorted(range(len(rows)), key=lambda k: (word_of(rows[k]) not in (VIOLATED, OPEN), k))
     return sorted(order[:MOST_LINES])
 
 
@@ -171,7 +177,7 @@ def _verdict(page: Page, row: Accepted, number: int, digits: str) -> None:
         (name[:1].upper() + name[1:], "any"), ("", "any"),
         (None if found is None else Formula(f"INDEX({{acceptance_found}},{number})", found), "0.0"),
         (None if limit is None else Formula(f"INDEX({{acceptance_limits}},{number})", limit), "0.0"),
-        (Formula(f"INDEX({{acceptance_verdicts}},{number})", tr(word)), _STYLES[word]),
+        (Formula(f"INDEX({{acceptance_verdicts}},{number})", tr(word)), _STYLES.get(word, "neutral")),
         (where, "any"), ("", "any"), (tr(KNOWN.get(row.status, row.status)), "any"),
     )  # fmt: skip
     for column, (value, style) in enumerate(cells, 1):

@@ -233,10 +233,10 @@ class Page:
         """Put a chart below what stands there, or into rows that were kept free for it."""
         self.sheet.add_chart(chart, f"A{self.room_for_chart() if row is None else row}")
 
-    def room_for_chart(self) -> int:
+    def room_for_chart(self, rows: int = CHART_ROWS) -> int:
         """Keep rows free for a chart of what comes later, and return the first of them."""
-        self.next += CHART_ROWS
-        return self.next - CHART_ROWS
+        self.next += rows
+        return self.next - rows
 
     def new_page(self) -> None:
         """Let what follows begin on a page of its own when it is printed."""
@@ -260,6 +260,7 @@ class Page:
         rows = self.next if self._last_printed is None else self._last_printed
         if paper == "a4" and rows > LONG_SHEET and width <= LONG_WIDE and not sheet._charts:
             sheet.sheet_properties.pageSetUpPr.fitToPage, sheet.page_setup.scale = False, LONG_SCALE
+            sheet.print_title_cols = "A:A"  # where letters are wider than thought the last columns come on a page of their own
         if sheet.page_setup.fitToWidth > 1:
             sheet.print_title_cols = "A:A"
         for number, needed in self._needed.items():

@@ -6,32 +6,37 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from openpyxl.formatting.rule import CellIsRule
-
 from tractionpower.reporting.facts.device_words import device_told
-from tractionpower.reporting.facts.outages import COMPUTED, Failure, Outages
+from tractionpower.reporting.facts.outages import COMPUTED, Outages
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.common.acceptance import Accepted
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.cells import RED_FILL, fill
 from tractionpower.reporting.workbook.frame.formulas import Formula
-from tractionpower.reporting.workbook.frame.page import Block, Column, Page
-from tractionpower.reporting.workbook.sizing.judging import HOLDS, NO, YES, colour_red, colour_word, judged, known, limit_line
+from tractionpower.reporting.workbook.frame.page import Column, Page
+from tractionpower.reporting.workbook.outages import outage_reasons
+from tractionpower.reporting.workbook.outages.case_figures import (
+    FIRST,
+    NOT_COMPUTED,
+    Case,
+    figure_of,
+    grid_in_words,
+    limit_name,
+    range_name,
+    tolerance_of,
+)
+from tractionpower.reporting.workbook.sizing.judging import (
+    HOLDS,
+    NO,
+    YES,
+    Bound,
+    bound_line,
+    colour_red,
+    colour_word,
+    judged,
+    known,
+)
 from tractionpower.results.verdicts import sense_of
 from tractionpower.studies.cases.judgement import Check
-
-Case = Mapping[str, Any]
-
-NOT_COMPUTED = mark("not computed")
-GRID_WORDS = {"normal": mark("normal"), "low": mark("low"), "high": mark("high")}
-
-
-def grid_in_words(grid: object) -> str:
-    """Return the voltage of the feeding grid in a word."""
-    return tr(GRID_WORDS.get(str(grid), str(grid)))
-
-
-FIRST = (Column("what is out", widest=44), Column("grid voltage", "beside", 10))
 
 
 @dataclass(frozen=True)
@@ -85,7 +90,8 @@ SHEETS = (
     Sheet(
         "loads", mark("Outage loads"), mark("Loads and contracts in outages: every outage at every grid voltage"),
         mark("Highest utilisation: of all devices in the window that rules, of what the rating permits. Changes: less the value"
-             " with nothing out at the same grid voltage. Shares: of the contract, of the setting of a breaker."),
+             " with nothing out at the same grid voltage. Shares: of the contract, of the setting of a breaker. Devices beyond"
+             " their rating are counted with the limit of the run."),
         (
             Column("highest utilisation [%]", "0.0", key="utilisation_percent"),
             Column("device", "beside", 28, key="utilisation_device"),
@@ -108,9 +114,9 @@ SHEETS = (
     ),
     Sheet(
         "served", mark("Outage trains"), mark("Trains and loads in outages: every outage at every grid voltage"),
-        mark("Late: at a timed call, beyond the tolerance. Latest: at least that where trains are stuck at the end. Stuck: trains"
-             " that stand for good. Without voltage: for longer than trains coast. Unfinished: trains that end their run with"
-             " nothing out. Not served: fixed loads without a voltage."),
+        mark("Late: at a timed call, beyond the tolerance of the run. Latest: at least that where trains are stuck at the end."
+             " Stuck: trains that stand for good. Without voltage: for longer than trains coast. Unfinished: trains that end"
+             " their run with nothing out. Not served: fixed loads without a voltage."),
         (
             Column("late trains", "0", key="late_trains"),
             Column("latest [s]", "0", key="worst_late_s"),
@@ -126,27 +132,13 @@ SHEETS = (
     ),
 )  # fmt: skip
 
-COUNTS = frozenset({"overloaded", "late_trains", "stuck_trains", "dark_trains", "unfinished_trains", "unserved_loads", "trips"})
-"""Figures that are 0 also in cases that were not computed."""
-
 
 def add(book: Book, outages: Outages) -> None:
     """Add the sheets of all cases, and tell the sheet of acceptance the worst of each limit."""
     for sheet in SHEETS:
         _add(book, outages, sheet)
-    _fails(book, outages)
+    outage_reasons.add(book, outages)
     _accept(book, outages)
-
-
-def range_name(figure: str) -> str:
-    """Return the name of the range with a figure of all cases."""
-    return f"cases_{figure}"
-
-
-def figure_of(case: Case, name: str) -> Any:
-    """Return a figure of a case, None where it has none."""
-    value = case.get(name)
-    return None if value is None or (name in COUNTS and case["status"] not in COMPUTED) else value
 
 
 def _add(book: Book, outages: Outages, sheet: Sheet) -> None:
@@ -156,6 +148,10 @@ def _add(book: Book, outages: Outages, sheet: Sheet) -> None:
     page = book.page(sheet.name, sheet.title)
     checks = [check for check in outages.checks if check.figure in figures]
     limits = _limits(page, checks)
+    for limit, bound in limits.items():
+        book.define(limit_name(limit), page, bound.limit.replace("$", ""))
+        if bound.tolerance.startswith("$"):
+            book.define(tolerance_of(limit), page, bound.tolerance.replace("$", ""))
     page.note(sheet.note)
     columns = _columns(sheet, shown)
     block = page.table(columns, _rows(outages, sheet, columns, checks, limits), frozen=True)
@@ -164,16 +160,17 @@ def _add(book: Book, outages: Outages, sheet: Sheet) -> None:
             book.define(range_name(f"{sheet.key}_hold" if column.key == HOLDS else column.key), page, block.cells(column.key))
     colour_word(block, HOLDS)
     for check in checks:
-        colour_red(block, block.cells(check.figure), _beyond(check, limits))
+        colour_red(block, block.cells(check.figure), limits[check.limit].beyond(is_floor=check.is_floor))
 
 
-def _limits(page: Page, checks: Sequence[Check]) -> dict[str, str]:
-    """Write the limits above the table and return their addresses; what must not be at all has none."""
-    found: dict[str, str] = {}
+def _limits(page: Page, checks: Sequence[Check]) -> dict[str, Bound]:
+    """Write the limits above the table and return their addresses."""
+    found: dict[str, Bound] = {}
     for check in checks:
-        if (check.limit != check.figure or check.value != 0.0) and check.limit not in found:
-            words = tr(LIMIT_WORDS.get(check.limit, check.name))
-            found[check.limit] = limit_line(page, words, check.limit, check.value, check.unit)
+        if check.limit not in found:
+            words = recorded(check.name)
+            label = tr(LIMIT_WORDS[check.limit]) if check.limit in LIMIT_WORDS else words[:1].upper() + words[1:]
+            found[check.limit] = bound_line(page, label, (check.limit, check.value, check.unit), check.tolerance)
     return found
 
 
@@ -187,19 +184,17 @@ LIMIT_WORDS = {
     "contract_power_kw": mark("Permitted, of the contract"),
     "breaker_percent": mark("Permitted, of the setting"),
     "tolerance_s": mark("Tolerance of lateness"),
+    "trips": mark("Trips, permitted"),
+    "stuck_trains": mark("Stuck trains, permitted"),
+    "dark_trains": mark("Trains without voltage, permitted"),
+    "unfinished_trains": mark("Unfinished trains, permitted"),
+    "unserved_loads": mark("Loads not served, permitted"),
+    "blackout_s": mark("Nothing fed at all, permitted"),
 }
 
 
 DEVICES = ("utilisation_device", "breaker_device")
 """Figures of a case that name a device."""
-
-
-def _beyond(check: Check, limits: Mapping[str, str]) -> str:
-    """Return the test that a figure is beyond its limit, such as ``<$B$3-0.1``."""
-    limit = limits.get(check.limit, "0")
-    if check.is_floor:
-        return f"<{limit}-{check.tolerance:g}"
-    return f">{limit}+{check.tolerance:g}" if check.tolerance else f">{limit}"
 
 
 def _columns(sheet: Sheet, shown: Sequence[Column]) -> list[Column]:
@@ -212,7 +207,7 @@ def _columns(sheet: Sheet, shown: Sequence[Column]) -> list[Column]:
 
 
 def _rows(
-    outages: Outages, sheet: Sheet, columns: Sequence[Column], checks: Sequence[Check], limits: Mapping[str, str]
+    outages: Outages, sheet: Sheet, columns: Sequence[Column], checks: Sequence[Check], limits: Mapping[str, Bound]
 ) -> Iterator[list[Any]]:
     base = {case["grid"]: (number, case) for number, case in enumerate(outages.by_id.values(), 1) if case["kind"] == "base"}
     for case in outages.by_id.values():
@@ -234,12 +229,15 @@ def _change(case: Case, figure: str, base: tuple[int, Case] | None) -> Formula |
     return Formula(f"{{{figure}}}-INDEX({{{range_name(figure)}}},{base[0]})", value - other)
 
 
-def _holds(outages: Outages, case: Case, checks: Sequence[Check], limits: Mapping[str, str]) -> Formula | str:
+def _holds(outages: Outages, case: Case, checks: Sequence[Check], limits: Mapping[str, Bound]) -> Formula | str:
     if case["status"] not in COMPUTED:
         return tr(NOT_COMPUTED)
     if not checks:
         return ""
-    tests = ",".join(f"AND(ISNUMBER({{{check.figure}}}),{{{check.figure}}}{_beyond(check, limits)})" for check in checks)
+    tests = ",".join(
+        f"AND(ISNUMBER({{{check.figure}}}),{{{check.figure}}}{limits[check.limit].beyond(is_floor=check.is_floor)})"
+        for check in checks
+    )
     failed = [not check.is_met(case) for check in checks]
     by_numbers = [known(figure_of(case, check.figure)) and _is_beyond(check, case) for check in checks]
     return judged(f'IF(OR({tests}),"{tr(NO)}","{tr(YES)}")', NO if any(by_numbers) else YES, NO if any(failed) else YES)
@@ -248,45 +246,6 @@ def _holds(outages: Outages, case: Case, checks: Sequence[Check], limits: Mappin
 def _is_beyond(check: Check, case: Case) -> bool:
     value = float(case[check.figure])
     return value < check.value - check.tolerance if check.is_floor else value > check.value + check.tolerance
-
-
-_FAILS = (
-    *FIRST,
-    Column("status", "beside", key="status"),
-    Column("fails at", widest=110, key="fails"),
-    Column("reason", widest=40, key="reason"),
-    Column("case", widest=48, key="case"),
-)
-
-
-def _fails(book: Book, outages: Outages) -> None:
-    """Add what each case fails at, in words, and how it can be run again."""
-    page = book.page("What fails", "What fails: every outage at every grid voltage")
-    page.note(
-        "`tractionpower run STUDY` with the changes of table case_changes repeats a case with all its tables. A case that failed"
-        " or was refused has no figures. Trips of breakers are failures where limits say so. These words are those of the"
-        " study; verdicts that follow edited limits stand on the other sheets."
-    )
-    columns = _FAILS if any(case["reason"] for case in outages.by_id.values()) else tuple(c for c in _FAILS if c.key != "reason")
-    block = page.table(columns, (_told(outages, case, columns) for case in outages.by_id.values()), frozen=True)
-    _colour_status(block)
-
-
-def _told(outages: Outages, case: Case, columns: Sequence[Column]) -> list[Any]:
-    words = "; ".join(_failure(failure) for failure in outages.failures(case))
-    cells = {"status": recorded(case["status"]), "fails": words, "reason": case["reason"], "case": case["case"]}
-    first = [case["words"], grid_in_words(case["grid"])]
-    return [*first, *(cells[column.key] for column in columns[len(first) :])]
-
-
-def _failure(failure: Failure) -> str:
-    return failure.words if failure.short == failure.words else f"{recorded(failure.short)}: {failure.words}"
-
-
-def _colour_status(block: Block) -> None:
-    for word in ("failed", "refused", "flagged"):
-        rule = CellIsRule(operator="equal", formula=[f'"{recorded(word)}"'], fill=fill(RED_FILL))
-        block.sheet.conditional_formatting.add(block.cells("status"), rule)
 
 
 def _accept(book: Book, outages: Outages) -> None:
@@ -301,9 +260,17 @@ def _accept(book: Book, outages: Outages) -> None:
         worst = min(numbers) if check.is_floor else max(numbers)
         found = Formula(f"{'MIN' if check.is_floor else 'MAX'}({{{range_name(check.figure)}}})", worst)
         place, time, status, source = (str(verdict[key] or "") for key in ("place", "time", "status", "source"))
+        place = _place(outages, place)
         book.acceptance.append(
             Accepted(
                 check.name, check.limit, check.value, check.unit, sense_of(verdict), found, place, time, status, source,
                 tolerance=check.tolerance,
             )
         )  # fmt: skip
+
+
+def _place(outages: Outages, place: str) -> str:
+    """Return the place of a verdict with its case in the words of the other sheets."""
+    cases = [case for case in outages.by_id if place == case or place.startswith(f"{case}: ")]
+    case = max(cases, key=len, default="")
+    return f"{outages.told(case)}{place[len(case) :]}" if case else place

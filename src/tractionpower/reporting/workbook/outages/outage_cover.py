@@ -13,11 +13,11 @@ from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Page
-from tractionpower.reporting.workbook.outages.outage_cases import grid_in_words
-from tractionpower.reporting.workbook.outages.outage_table import BANNER
-
-MOST_NAMED = 1
-"""Outages that are named for each thing that fails."""
+from tractionpower.reporting.workbook.outages.case_figures import grid_in_words, range_name
+from tractionpower.reporting.workbook.outages.outage_reasons import Reasons, failing, span, spans
+from tractionpower.reporting.workbook.outages.outage_table import BANNER, WORSE_RANGE
+from tractionpower.reporting.workbook.sizing.judging import YES, sentence
+from tractionpower.studies.cases.judgement import Check
 
 
 def fill(book: Book, page: Page, outages: Outages) -> None:
@@ -47,32 +47,83 @@ def _verdicts(book: Book, outages: Outages) -> Iterator[tuple[str, Any, str]]:
     groups = list(outages.groups())
     outs = [cases for first, cases in groups if first["kind"] != "base"]
     failing = [cases for cases in outs if any(map(outages.failures, cases.values()))]
-    worse = sum(any(map(outages.is_worse, cases.values())) for cases in failing)
     if outs:
         words = tr("{failing} of {all} outages fail", failing=len(failing), all=len(outs))
         yield tr("Outages"), Formula(f"{{{BANNER}}}", words) if BANNER in book.names else words, "neutral"
     else:
         yield tr("Outages"), tr("No outage was looked at"), "doubt"
-    if 0 < worse < len(failing):
-        yield "", tr("{worse} of them at something that holds with nothing out.", worse=worse), "neutral"
+    if outs:
+        yield "", _worse(sum(any(map(outages.is_worse, cases.values())) for cases in outs)), "neutral"
+    reasons = Reasons(book, outages)
     base = [case for first, cases in groups if first["kind"] == "base" for case in cases.values()]
-    said = [(case, "; ".join(failure.words for failure in outages.failures(case))) for case in base]
-    if said:
-        lines = (
-            tr("With nothing out, {grid} grid voltage: {found}.", grid=grid_in_words(case["grid"]), found=found or tr("holds"))
-            for case, found in said
+    if base:
+        yield tr("Nothing out"), _base(reasons, base), "neutral"
+    if len(base) < len(outages.by_id):
+        yield from _failing(reasons)
+
+
+def _worse(many: int) -> Formula:
+    """Tell how many outages fail at more than nothing out does, by the sheet of outages."""
+    count = f'COUNTIF({{{WORSE_RANGE}}},"{tr(YES)}")'
+    some = sentence(tr("{worse} of them at something that holds with nothing out."), worse=(count, many))
+    none = sentence(tr("None of them at anything that holds with nothing out."))
+    return Formula(f"IF({count}=0,{none.text},{some.text})", (some if many else none).value)
+
+
+def _base(reasons: Reasons, base: list[Any]) -> Formula:
+    """Tell what fails with nothing out, a line for each grid voltage."""
+    lines = []
+    for case in base:
+        cell = f"INDEX({{{range_name('how')}}},{reasons.numbers[case['case']]})"
+        told = reasons.how(case)
+        found = str(told.value) if isinstance(told, Formula) else told
+        if case["status"] not in COMPUTED:
+            found = recorded(case["status"])
+        text = tr("With nothing out, {grid} grid voltage: {found}.", grid=grid_in_words(case["grid"]), found="{found}")
+        spoken = f'IF({cell}="","{tr("holds")}",{cell})' if case["status"] in COMPUTED else f'"{recorded(case["status"])}"'
+        lines.append(sentence(text, found=(spoken, found or tr("holds"))))
+    return Formula("&CHAR(10)&".join(line.text for line in lines), "\n".join(str(line.value) for line in lines))
+
+
+def _failing(reasons: Reasons) -> Iterator[Said]:
+    """Tell for each limit that outages pass in how many cases, and the worst; and for all others together whether some do."""
+    others = []
+    for check in reasons.checks:
+        count, cases = failing(reasons, check)
+        if cases:
+            yield tr("Fails at: {what}", what=recorded(check.name)), _worst(reasons, check, count, cases), "neutral"
+        else:
+            others.append((check, count))
+    if others:
+        each = "&".join(f'IF({count}>0,"; {_quoted(recorded(check.name))}: "&{count},"")' for check, count in others)
+        total = "+".join(count for _, count in others)
+        yield (
+            tr("Other limits"),
+            Formula(f'IF({total}=0,"{tr("no case fails")}",MID({each},3,1000))', tr("no case fails")),
+            "neutral",
         )
-        yield tr("Nothing out"), "\n".join(lines), "bad" if any(found for _, found in said) else "good"
-    yield from _failing(outages)
 
 
-def _failing(outages: Outages) -> Iterator[Said]:
-    """Tell for each thing that fails in how many cases, and name the worst."""
-    for what, cases in outages.failing().items():
-        named = "\n".join(f"{outages.told(case)}: {words}" for case, words in cases[:MOST_NAMED])
-        left = len(cases) - MOST_NAMED
-        more = f"\n{trn('and {count} more case, see sheet What fails', 'and {count} more cases, see sheet What fails', left)}"
-        yield tr("Fails at: {what}", what=recorded(what)), f"{named}{more if left > 0 else ''}", "bad"
+def _worst(reasons: Reasons, check: Check, count: str, cases: list[Any]) -> Formula:
+    """Return how many cases fail at a limit, and how the worst of them stands."""
+    rows = spans(reasons.outages)
+    area, sign = span(check.figure, rows), 1.0 if check.is_floor else -1.0
+    worst = min(cases, key=lambda case: sign * case[check.figure])
+    most = f"{'MIN' if check.is_floor else 'MAX'}({area})"
+    at = f"{rows[0] - 1}+MATCH({most},{area},0)"
+    grid = tr("{grid} grid voltage", grid="{grid}")
+    text = tr("cases: {count}; worst: {case}, {grid}: {how}", count="{count}", case="{case}", grid=grid, how="{how}")
+    how = reasons.sentence(check, worst, most, at)
+    told = sentence(
+        text,
+        count=(count, len(cases)), case=(f"INDEX({{{range_name('words')}}},{at})", worst["words"]),
+        grid=(f"INDEX({{{range_name('grid')}}},{at})", grid_in_words(worst["grid"])), how=(how.text, how.value),
+    )  # fmt: skip
+    return Formula(f'IF({count}=0,"{tr("no case fails")}",{told.text})', told.value)
+
+
+def _quoted(text: str) -> str:
+    return text.replace('"', '""')
 
 
 def _trust(outages: Outages) -> Any:

@@ -25,6 +25,7 @@ from tractionpower.reporting.workbook.sizing.judging import (
     YES,
     at_most,
     banner,
+    bound_line,
     colour_red,
     colour_use,
     colour_word,
@@ -44,6 +45,9 @@ USE, BASE_USE = mark("utilisation in the worst case [%]"), mark("with nothing ou
 
 MOST_PRINTED = 300
 """Rows along the line that are printed with their charts."""
+
+CHART_ROWS, CHART_CM = 26, 12.8
+"""Rows and height of a chart that leaves room on its page for the title and the notes."""
 
 PRINTED_TO = "L"
 """Last column of the charts."""
@@ -140,7 +144,7 @@ def _along(book: Book, outages: Outages) -> None:
         return
     page = book.page("Envelope", "Envelope along the line: the worst voltage and rail potential of all outages")
     limit = outages.limit("u_min2") if (rows["quantity"] == "voltage").any() else None
-    cell = "" if limit is None else limit_line(page, "U_min2", "u_min2", limit.value, limit.unit)
+    bound = None if limit is None else bound_line(page, "U_min2", ("u_min2", limit.value, limit.unit), TOLERANCE_V)
     page.note(
         "Nothing out: at normal grid voltage. Voltage: the lowest of trains within 0.25 km and of fixed places. Rail potential:"
         " the greatest of either sign, against remote earth. The last column tells the case that is worst there."
@@ -150,16 +154,16 @@ def _along(book: Book, outages: Outages) -> None:
     for number in range(len(groups)):
         if number:
             page.new_page()
-        kept.append(page.room_for_chart())
+        kept.append(page.room_for_chart(CHART_ROWS))
     if len(rows) > MOST_PRINTED:
         page.note(tr("The charts are printed; the {rows} rows that they are drawn from stand below.", rows=len(rows)))
         page.sheet.print_area = f"A1:{PRINTED_TO}{page.next - 1}"
     for (words, quantity, own), row in zip(groups, kept, strict=True):
         page.new_page()
         page.section(words)
-        block = page.table(*_places(outages, quantity, own, (cell, limit)))
-        if "limit" in block.keys:
-            colour_red(block, block.cells("worst"), f"<{cell}-{TOLERANCE_V:g}")
+        block = page.table(*_places(outages, quantity, own, ("" if bound is None else bound.limit, limit)))
+        if bound is not None and "limit" in block.keys:
+            colour_red(block, block.cells("worst"), bound.beyond(is_floor=True))
         page.chart(_chart(words, quantity, block, own), row)
 
 
@@ -206,6 +210,7 @@ def _chart(words: str, quantity: str, block: Block, rows: pd.DataFrame) -> Any:
     if "limit" in block.keys:
         draw(chart, block, Line("U_min2", "km", "limit", block.first, block.last, GREY, "dash"))
         chart.y_axis.scaling.min = (float(rows["worst_v"].min()) - 100.0) // 200.0 * 200.0
+    chart.height = CHART_CM
     low, high = float(rows["km"].min()), float(rows["km"].max())
     chart.x_axis.scaling.min, chart.x_axis.scaling.max = low // 10.0 * 10.0, -(-high // 10.0) * 10.0
     return chart

@@ -14,7 +14,7 @@ from openpyxl.utils import get_column_letter
 from tractionpower.reporting.facts.device_words import KINDS, device_told, kind_order
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
-from tractionpower.reporting.texts import tr
+from tractionpower.reporting.texts import number, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page
@@ -26,18 +26,27 @@ MOST_DEVICES, MOST_OUTAGES = 70, 60
 WIDTH = 5.0
 """Width of the column of an outage [characters]."""
 
+LEAST_A = 1.0
+"""Highest current with nothing out from which on devices are shown [A]."""
+
 _LOW, _MID, _HIGH = "FFFFFF", "FFE08A", "D55E00"
 _POINTS = 6.0
 """Height of a rotated character [pt]."""
 
 
 def add(book: Book, outages: Outages) -> None:
-    """Add the sheet, if devices have ratings."""
+    """Add the sheet: utilisations, or where no device has a rating the highest currents of those with nothing out."""
     rows = outages.table("case_devices")
-    rows = rows[rows["utilisation_percent"].notna()] if len(rows) else rows
-    if not len(rows):
-        return
-    wide, kinds = _wide(outages, rows)
+    rated = rows[rows["utilisation_percent"].notna()] if len(rows) else rows
+    if len(rated):
+        _rated(book, outages, rated)
+    elif len(rows):
+        _bare(book, outages, rows)
+
+
+def _rated(book: Book, outages: Outages, rows: pd.DataFrame) -> None:
+    """Add the sheet of utilisations."""
+    wide, kinds = _wide(outages, rows, "utilisation_percent")
     page = book.page("Outage heat map", "Outage heat map: utilisation of the devices in every outage [%]")
     limit = limit_line(page, tr("Permitted utilisation"), "utilisation_percent", outages.scenario.sizing.utilisation_percent, "%")
     page.note(
@@ -47,6 +56,44 @@ def add(book: Book, outages: Outages) -> None:
             tight=f"{TIGHT_PERCENT:g}", devices=MOST_DEVICES, outages=MOST_OUTAGES,
         )
     )  # fmt: skip
+    block, area = _fill(page, wide, kinds)
+    rule = FormulaRule(formula=[f"AND(ISNUMBER({area[0]}),{area[0]}>{limit})"], font=Font(bold=True))
+    block.sheet.conditional_formatting.add(area[1], rule)
+    _scale(block, area[1], ("num", 0), (f"{TIGHT_PERCENT / 100.0:g}*{limit}", f"1.2*{limit}"))
+
+
+def _bare(book: Book, outages: Outages, rows: pd.DataFrame) -> None:
+    """Add the sheet of the highest currents, of those with nothing out at the same grid voltage [%]."""
+    grids = {case: row["grid"] for case, row in outages.by_id.items()}
+    base = {case for case, row in outages.by_id.items() if row["kind"] == "base"}
+    rows = rows.assign(case=rows["case"].astype(str), device=rows["device"].astype(str))
+    rows = rows.assign(grid=rows["case"].map(grids))
+    known = rows[rows["case"].isin(base) & (rows["peak_a"] > LEAST_A)].drop_duplicates(["device", "grid"])
+    least = known.set_index(["device", "grid"])["peak_a"].rename("base_a")
+    rows = rows[~rows["case"].isin(base)].join(least, on=["device", "grid"], how="inner")
+    rows = rows.assign(of_base=100.0 * rows["peak_a"] / rows["base_a"])
+    rows = rows[rows["of_base"].notna()]
+    if not len(rows):
+        return
+    wide, kinds = _wide(outages, rows, "of_base")
+    page = book.page(
+        "Outage heat map", "Outage heat map: highest current of the devices in every outage, of that with nothing out [%]"
+    )
+    page.note(
+        tr(
+            "No device has a rating, so there is no utilisation to show: highest currents are held against those with nothing"
+            " out at the same grid voltage. 100: as with nothing out; the highest of all grid voltages. Devices that carry less than"
+            " {least} A with nothing out are left out, and of many the {devices} devices and {outages} outages with the highest"
+            " values are shown.",
+            least=number(LEAST_A), devices=MOST_DEVICES, outages=MOST_OUTAGES,
+        )
+    )  # fmt: skip
+    block, area = _fill(page, wide, kinds)
+    _scale(block, area[1], ("num", 100), ("150", "200"))
+
+
+def _fill(page: Page, wide: pd.DataFrame, kinds: dict[str, str]) -> tuple[Block, tuple[str, str]]:
+    """Write the table; return it, and the first cell and the area of its numbers."""
     last = f"case_{len(wide.columns) - 1}"
     columns = (
         Column("device", widest=30, key="device"),
@@ -62,16 +109,17 @@ def add(book: Book, outages: Outages) -> None:
     block = page.table(columns, cells, frozen=True)
     page.sheet.freeze_panes = f"D{block.first}"
     _turn(page, block)
-    _colour(block, f"{block.cell('most', block.first)}:{block.cell(last, block.last)}", limit)
     page.narrow(4, 3 + len(wide.columns), WIDTH)
+    first = block.cell("most", block.first)
+    return block, (first, f"{first}:{block.cell(last, block.last)}")
 
 
-def _wide(outages: Outages, rows: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
-    """Return the utilisation by device and by what is out, the worst of all grid voltages; and the kinds of the devices."""
+def _wide(outages: Outages, rows: pd.DataFrame, figure: str) -> tuple[pd.DataFrame, dict[str, str]]:
+    """Return a figure by device and by what is out, the worst of all grid voltages; and the kinds of the devices."""
     words = {case: row["words"] for case, row in outages.by_id.items()}
     rows = rows.assign(device=rows["device"].astype(str), kind=rows["kind"].astype(str), what=rows["case"].astype(str).map(words))
     kinds = dict(zip(rows["device"], rows["kind"], strict=True))
-    wide = rows.pivot_table(index="device", columns="what", values="utilisation_percent", aggfunc="max", sort=False)
+    wide = rows.pivot_table(index="device", columns="what", values=figure, aggfunc="max", sort=False)
     order = [name for name in dict.fromkeys(words.values()) if name in wide.columns]
     worst = set(wide.max().sort_values(ascending=False, kind="stable").index[:MOST_OUTAGES])
     devices = wide.max(axis=1).sort_values(ascending=False, kind="stable").index[:MOST_DEVICES]
@@ -92,12 +140,10 @@ def _turn(page: Page, block: Block) -> None:
     page.sheet.row_dimensions[row].height = min(max(60.0, longest * _POINTS + 14.0), 400.0)
 
 
-def _colour(block: Block, area: str, limit: str) -> None:
-    first = area.split(":", maxsplit=1)[0]
-    rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{first}>{limit})"], font=Font(bold=True))
-    block.sheet.conditional_formatting.add(area, rule)
+def _scale(block: Block, area: str, low: tuple[str, float], others: tuple[str, str]) -> None:
+    """Shade numbers from white over amber to red; `others` are the formulas of where amber and red are."""
     scale = ColorScaleRule(
-        start_type="num", start_value=0, start_color=_LOW, mid_type="formula", mid_value=f"{TIGHT_PERCENT / 100.0:g}*{limit}",
-        mid_color=_MID, end_type="formula", end_value=f"1.2*{limit}", end_color=_HIGH,
+        start_type=low[0], start_value=low[1], start_color=_LOW, mid_type="formula", mid_value=others[0],
+        mid_color=_MID, end_type="formula", end_value=others[1], end_color=_HIGH,
     )  # fmt: skip
     block.sheet.conditional_formatting.add(area, scale)

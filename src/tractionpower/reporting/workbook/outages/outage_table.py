@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages
-from tractionpower.reporting.texts import mark, recorded, tr
+from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
+from tractionpower.reporting.workbook.frame.cells import RED_FILL
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page
+from tractionpower.reporting.workbook.frame.rules import Rule
 from tractionpower.reporting.workbook.outages import outage_cases, outage_heat
-from tractionpower.reporting.workbook.outages.outage_cases import SHEETS, figure_of, grid_in_words, range_name
+from tractionpower.reporting.workbook.outages.case_figures import figure_of, grid_in_words, limit_name, range_name
+from tractionpower.reporting.workbook.outages.outage_cases import LIMIT_WORDS, SHEETS
+from tractionpower.reporting.workbook.outages.outage_reasons import WORSE, Reasons, span
 from tractionpower.reporting.workbook.sizing.judging import (
     HOLDS,
     NO,
     YES,
+    Bound,
     banner,
+    bound_line,
     colour_red,
     colour_use,
     colour_word,
     judged,
     known,
-    limit_line,
     sentence,
 )
 
@@ -31,6 +37,9 @@ Case = Mapping[str, Any]
 
 BANNER = "outages_banner"
 """Name of the cell that says how many outages fail."""
+
+WORSE_RANGE = "outages_worse"
+"""Name of the range that says of each outage whether it fails at more than nothing out does."""
 
 _MIN, _MAX = "MIN", "MAX"
 _FIGURES = (
@@ -58,11 +67,13 @@ class _Group:
 def add(book: Book, outages: Outages) -> None:
     """Add the sheet of outages, that of heat, and those of all cases."""
     page = book.page("Outages", "Outages: what is out, and what becomes of voltages, devices and trains")
+    outage_heat.add(book, outages)
+    outage_cases.add(book, outages)
     head = page.next
     page.next += 1  # for the banner
     limits = {
-        check.limit: limit_line(page, tr(words), check.limit, check.value, check.unit)
-        for check, words in ((check, outage_cases.LIMIT_WORDS.get(check.limit, "")) for check in _limits(outages))
+        check.limit: bound_line(page, tr(LIMIT_WORDS[check.limit]), (check.limit, check.value, check.unit), check.tolerance)
+        for check in _limits(outages)
     }
     page.note(
         "A row for each outage, with the worst of all grid voltages where none is named; grouped by kind, along the line. An"
@@ -72,14 +83,15 @@ def add(book: Book, outages: Outages) -> None:
     )
     groups = _groups(outages)
     columns = _columns(outages)
-    block = page.table(columns, [_row(outages, group, columns) for group in groups], frozen=True)
+    reasons = Reasons(book, outages)
+    rows = [_row(reasons, group, columns) for group in groups]
+    block = page.table(columns, rows, frozen=True)
     colour_word(block, HOLDS)
-    _colour(block, limits, outages)
+    _colour(book, block, limits, outages)
     end, page.next = page.next, head
     _banner(page, outages, block, groups)
     page.next = end
-    outage_heat.add(book, outages)
-    outage_cases.add(book, outages)
+    book.define(WORSE_RANGE, page, block.cells("worse"))
 
 
 def _limits(outages: Outages) -> list[Any]:
@@ -113,6 +125,7 @@ def _columns(outages: Outages) -> list[Column]:
         Column("kind", widest=20, key="kind"),
         Column(HOLDS, "beside", key=HOLDS),
         Column("why, and at which grid voltage", widest=60, key="why"),
+        Column(WORSE, "beside", 12, key="worse"),
         *grids,
         *(Column(words, style, key=figure) for words, style, figure, _ in _FIGURES if _has(outages, figure)),
         Column("added delay, at most [s]", "0", key="added"),
@@ -120,13 +133,13 @@ def _columns(outages: Outages) -> list[Column]:
     ]
 
 
-def _row(outages: Outages, group: _Group, columns: Sequence[Column]) -> list[Any]:
-    first, (low, high) = group.first, group.rows
+def _row(reasons: Reasons, group: _Group, columns: Sequence[Column]) -> list[Any]:
+    outages, first, (low, high) = reasons.outages, group.first, group.rows
     by_grid = {case["grid"]: row for row, case in enumerate(outages.by_id.values(), 1) if low <= row <= high}
     computed = [case for case in group.cases.values() if case["status"] in COMPUTED]
     cells: dict[str, Any] = {
         "words": first["words"], "kind": tr(KINDS_WORDS.get(str(first["kind"]), str(first["kind"]))),
-        "why": _why(outages, group.cases), HOLDS: _holds(outages, group),
+        "why": _why(reasons, group.cases, by_grid), "worse": _worse(outages, group), HOLDS: _holds(outages, group),
     }  # fmt: skip
     for grid in outages.grids:
         case = group.cases.get(grid)
@@ -136,23 +149,17 @@ def _row(outages: Outages, group: _Group, columns: Sequence[Column]) -> list[Any
     for _, _, figure, worst in _FIGURES:
         values = [value for case in computed if known(value := figure_of(case, figure))]
         found = (min if worst == _MIN else max)(values, default=None)
-        cells[figure] = None if found is None else Formula(f"{worst}({_span(figure, group.rows)})", found)
+        cells[figure] = None if found is None else Formula(f"{worst}({span(figure, group.rows)})", found)
     added = max((outages.added_s[case["case"]] for case in computed if case["case"] in outages.added_s), default=(None, ""))
     cells["added"], cells["train"] = added if added[0] and added[0] > 0.0 else (added[0], "")
     return [cells[column.key] for column in columns]
-
-
-def _span(figure: str, rows: tuple[int, int]) -> str:
-    """Return the cells of a figure of the cases of an outage."""
-    name = f"{{{range_name(figure)}}}"
-    return f"INDEX({name},{rows[0]}):INDEX({name},{rows[1]})"
 
 
 def _holds(outages: Outages, group: _Group) -> Formula | str:
     """Return whether all cases of an outage hold on all sheets of cases."""
     sheets = [sheet.key for sheet in SHEETS if _is_judged(outages, sheet)]
     size = group.rows[1] - group.rows[0] + 1
-    counts = "+".join(f'COUNTIF({_span(f"{key}_hold", group.rows)},"{tr(YES)}")' for key in sheets)
+    counts = "+".join(f'COUNTIF({span(f"{key}_hold", group.rows)},"{tr(YES)}")' for key in sheets)
     word = NO if any(map(outages.failures, group.cases.values())) else YES
     if size != len(group.cases) or not sheets:
         return tr(word)
@@ -164,33 +171,48 @@ def _is_judged(outages: Outages, sheet: Any) -> bool:
     return any(check.figure in figures for check in outages.checks)
 
 
-def _why(outages: Outages, cases: Mapping[str, Case]) -> str:
-    """Return what an outage fails at, and at which grid voltages."""
-    found: dict[str, list[str]] = {}
-    for grid, case in cases.items():
-        for failure in outages.failures(case):
-            grids = found.setdefault(recorded(failure.short), [])
-            grids += [grid] if grid not in grids else []
-    if len(outages.grids) == 1:
-        return "; ".join(found)
-    every = [grid for grid in outages.grids if grid in cases]
-    words = {grid: grid_in_words(grid) for grid in every}
-    return "; ".join(
-        f"{what} ({tr('all') if grids == every else ', '.join(words[g] for g in grids)})" for what, grids in found.items()
-    )
+def _worse(outages: Outages, group: _Group) -> Formula | str:
+    """Return whether an outage fails at more than nothing out does, at some grid voltage."""
+    if group.first["kind"] == "base":
+        return ""
+    word = tr(YES if any(map(outages.is_worse, group.cases.values())) else NO)
+    if group.rows[1] - group.rows[0] + 1 != len(group.cases):
+        return word
+    return Formula(f'IF(COUNTIF({span("worse", group.rows)},"{tr(YES)}")>0,"{tr(YES)}","{tr(NO)}")', word)
 
 
-def _colour(block: Block, limits: Mapping[str, str], outages: Outages) -> None:
+def _why(reasons: Reasons, cases: Mapping[str, Case], by_grid: Mapping[str, int]) -> Formula:
+    """Return what an outage fails at, and at which grid voltages, by the words of its cases."""
+    every = [grid for grid in reasons.outages.grids if grid in cases]
+    texts = {grid: str(getattr(told := reasons.short(cases[grid]), "value", told)) for grid in every}
+    cells = {grid: f"INDEX({{{range_name('short')}}},{by_grid[grid]})" for grid in every}
+    if len(reasons.outages.grids) == 1:
+        return Formula(f'{cells[every[0]]}&""', texts[every[0]])
+    pairs = ",".join(f"{cells[one]}={cells[other]}" for one, other in itertools.pairwise(every)) or "TRUE"
+    first, suffix = cells[every[0]], f" ({tr('all')})"
+    same = f'IF({first}="","",{first}&"{suffix}")'
+    each = "&".join(f'IF({cells[grid]}="","","; {grid_in_words(grid)}: "&{cells[grid]})' for grid in every)
+    shown = "; ".join(f"{grid_in_words(grid)}: {text}" for grid, text in texts.items() if text)
+    if len(set(texts.values())) == 1:
+        shown = f"{texts[every[0]]}{suffix}" if texts[every[0]] else ""
+    return Formula(f"IF(AND({pairs}),{same},MID({each},3,1000))", shown)
+
+
+def _colour(book: Book, block: Block, limits: Mapping[str, Bound], outages: Outages) -> None:
     floors = {check.figure: check for check in outages.checks if check.is_floor and check.limit in limits}
     for key in block.keys:
         figure = "lowest_voltage_v" if key.startswith("volts_") else key
         if key == "utilisation_percent" and key in limits:
-            colour_use(block, key, limits[key])
+            colour_use(block, key, limits[key].limit)
         elif figure in floors:
             check = floors[figure]
-            colour_red(block, block.cells(key), f"<{limits[check.limit]}-{check.tolerance:g}")
-        elif key in ("late_trains", "stuck_trains", "trips", "overloaded"):
-            colour_red(block, block.cells(key), ">0")
+            colour_red(block, block.cells(key), limits[check.limit].beyond(is_floor=True))
+        elif key in ("stuck_trains", "trips"):
+            limit = limit_name(key)
+            book.rules.append(Rule(block.sheet, block.cells(key), f"{{cell}}>{{{limit}}}", RED_FILL, {limit: 0.0}))
+        elif key in ("late_trains", "overloaded"):  # counted with the limits of the run: red only where limits are passed now
+            verdict = f"${block.cell(HOLDS, block.first)}"
+            book.rules.append(Rule(block.sheet, block.cells(key), f'{{cell}}>0,{verdict}="{tr(NO)}"', RED_FILL))
 
 
 def _banner(page: Page, outages: Outages, block: Block, groups: Sequence[_Group]) -> None:

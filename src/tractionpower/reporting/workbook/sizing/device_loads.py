@@ -19,19 +19,23 @@ from tractionpower.reporting.workbook.common.acceptance import Accepted
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL, fill
 from tractionpower.reporting.workbook.frame.formulas import Formula
-from tractionpower.reporting.workbook.frame.page import Block, Column
+from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 from tractionpower.reporting.workbook.frame.plots import COLOURS, DASHES, Line, draw, scatter, show_clock
 from tractionpower.reporting.workbook.sizing.judging import HOLDS, NO, YES, colour_red, colour_word, judged
+from tractionpower.studies.cases.judgement import DEMAND
 
 MOST_CURVES = 12
 SHARE, TIME = mark("share of the run [%]"), mark("quarter begins")
 NO_CONTRACT = mark("no contract")
+MOST_BARE = 200
+"""Supply points without a contract that a formula can name."""
+
 GROUPS = (
     (mark("Rectifier units"), ("unit",)),
     (mark("Substations"), ("substation",)),
     (mark("Feeders and cabin feeders"), ("feeder", "cabin_feeder")),
-    (mark("Contact-line sections"), ("contact_line",)),
-    (mark("Return cables and rails"), ("return_feeder", "rails")),
+    (mark("Sections of contact line"), ("contact_line",)),
+    (mark("Return feeders and rails"), ("return_feeder", "rails")),
 )
 
 _POINTS = (
@@ -39,6 +43,7 @@ _POINTS = (
     Column("highest demand [kW]", "0", key="most"),
     Column("quarter begins", "time"),
     Column("contracted [kW]", "0", key="contract"),
+    Column("highest, of the contract [%]", "0.0", key="share"),
     Column("quarters beyond it", "0", key="beyond"),
     Column("mean [kW]", "0"),
     Column(HOLDS, "beside"),
@@ -106,6 +111,7 @@ def _demand(book: Book) -> None:
     for number, row in enumerate(range(summary.first, summary.last + 1), 1):
         page.edit(summary.cell("contract", row), "0", 0.0)
         book.define(f"contract_{number}", page, summary.cell("contract", row))
+        book.define(f"contract_share_{number}", page, summary.cell("share", row))
     page.new_page()
     chart_row = page.room_for_chart()
     page.new_page()
@@ -125,7 +131,7 @@ def _demand(book: Book) -> None:
         block.sheet.conditional_formatting.add(area, FormulaRule(formula=[rule], fill=fill(RED_FILL)))
     shown = [name for name in wide.max().sort_values(ascending=False, kind="stable").index][:MOST_CURVES]
     page.chart(_demand_chart(block, [name for name in names if name in shown], len(names), wide.index), chart_row)
-    book.acceptance += _accepted(rows, names)
+    book.acceptance += _accepted(page, rows, names)
 
 
 def _summary(number: int, rows: pd.DataFrame) -> tuple[Any, ...]:
@@ -141,18 +147,27 @@ def _summary(number: int, rows: pd.DataFrame) -> tuple[Any, ...]:
     if has_one:
         verdict = judged(text, NO if beyond else YES, NO if (rows["met"].astype(str) == "no").any() else YES)
     if not np.isfinite(power).any():
-        return name, None, None, contract if has_one else None, count, None, verdict
+        return name, None, None, contract if has_one else None, None, count, None, verdict
     most = int(np.nanargmax(power))
     begin = Formula(f"INDEX({{demand_times}},MATCH({{most}},{own},0))", rows["from_s"].iloc[most])
     mean = Formula(f"AVERAGE({own})", float(np.nanmean(power)))
-    return name, Formula(f"MAX({own})", float(power[most])), begin, contract if has_one else None, count, mean, verdict
+    highest = Formula(f"MAX({own})", float(power[most]))
+    limited = has_one and contract > 0.0
+    share = Formula('IF(N({contract})>0,100*{most}/{contract},"")', 100.0 * power[most] / contract if limited else "")
+    return name, highest, begin, contract if has_one else None, share, count, mean, verdict
 
 
-def _accepted(rows: pd.DataFrame, names: Sequence[str]) -> Iterator[Accepted]:
-    """Yield for each supply point with a contract the quarter in which it takes most."""
+def _accepted(page: Page, rows: pd.DataFrame, names: Sequence[str]) -> Iterator[Accepted]:
+    """Yield for each supply point with a contract the quarter in which it takes most; and a row for those without one.
+
+    Contracts of the latter can be filled in on the sheet: what they take most of these is judged then.
+    """
+    bare = []
     for number, name in enumerate(names, 1):
         own = rows[(rows["name"] == name) & rows["power_kw"].notna() & rows["contract_power_kw"].notna()]
-        if len(own):
+        if own.empty:
+            bare.append(number)
+        else:
             worst = own.iloc[int(own["power_kw"].argmax())]
             yield Accepted(
                 "highest demand of a quarter of an hour", "contract_power_kw",
@@ -160,6 +175,13 @@ def _accepted(rows: pd.DataFrame, names: Sequence[str]) -> Iterator[Accepted]:
                 Formula(f"MAX({{demand_{number}}})", float(worst["power_kw"])), f"supply point {name}",
                 format_time(worst["from_s"]), "user", "contract of the inputs",
             )  # fmt: skip
+    if bare:
+        shares = ",".join(f"{{contract_share_{number}}}" for number in bare[:MOST_BARE])
+        found = Formula(f'IF(COUNT({shares})=0,"",MAX({shares}))', "")
+        yield Accepted(
+            DEMAND, "contract_power_kw", Formula("100", 100.0), "%", "at_most", found,
+            tr("see sheet {sheet}", sheet=page.sheet.title), "", "user", "contracts of the inputs", bare=NO_CONTRACT,
+        )  # fmt: skip
 
 
 def _demand_chart(block: Block, names: Sequence[str], every: int, starts: Any) -> Any:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.texts import mark, tr
-from tractionpower.reporting.workbook.common.acceptance import OPEN
+from tractionpower.reporting.workbook.common.acceptance import LEAST_TOLERANCE, OPEN, tolerance_name
 from tractionpower.reporting.workbook.common.verdicts import Comparison, Words, same_as
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, PLAIN_FILL, RED_FILL, fill
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -51,6 +52,43 @@ def limit_line(page: Page, label: str, limit: str, value: float, unit: str) -> s
     page.put(row, 3, unit, "plain")
     page.next += 1
     return f"$B${row}"
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """The addresses of a limit and of its tolerance on a sheet; a number where the tolerance is one of rounding or none."""
+
+    limit: str
+    tolerance: str = ""
+
+    def beyond(self, *, is_floor: bool) -> str:
+        """Return the test that a number is beyond it, such as ``<$B$3-$E$3``."""
+        side, sign = ("<", "-") if is_floor else (">", "+")
+        return f"{side}{self.limit}{sign}{self.tolerance}" if self.tolerance else f"{side}{self.limit}"
+
+
+def bound_line(page: Page, label: str, limit: tuple[str, float, str], tolerance: float) -> Bound:
+    """Write a line with a limit and its tolerance, which follow the sheet of acceptance.
+
+    Parameters
+    ----------
+    page
+        The sheet.
+    label
+        What is limited, in the language of the report.
+    limit
+        Name of the limit, as verdicts have it, its value and unit.
+    tolerance
+        By how much it may be missed; one of rounding is not shown.
+    """
+    name, value, unit = limit
+    row, address = page.next, limit_line(page, label, name, value, unit)
+    if tolerance < LEAST_TOLERANCE:
+        return Bound(address, f"{tolerance:g}" if tolerance else "")
+    page.put(row, 4, tr("tolerance"), "plain")
+    page.put(row, 5, Formula(f"{{{tolerance_name(f'limit_{name}')}}}", tolerance), "editable general")
+    page.widen(0.0, 0.0, 0.0, 10.0)
+    return Bound(address, f"$E${row}")
 
 
 def window_in_words(seconds: float) -> str:

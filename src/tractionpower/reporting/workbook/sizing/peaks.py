@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import pandas as pd
+from openpyxl.utils import absolute_coordinate
 
 from tractionpower.model.base import format_time
 from tractionpower.reporting.facts.device_words import KINDS, device_told
@@ -15,7 +15,7 @@ from tractionpower.reporting.texts import mark, number, tr
 from tractionpower.reporting.workbook.common.acceptance import Accepted
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
-from tractionpower.reporting.workbook.frame.page import Column
+from tractionpower.reporting.workbook.frame.page import Column, Page
 from tractionpower.reporting.workbook.sizing.judging import (
     HOLDS,
     NO,
@@ -132,25 +132,20 @@ def _breakers(book: Book, places: Places) -> None:
     end, page.next = page.next, head
     _breaker_banner(page, ordered, block.cells("holds"))
     page.next = end
-    book.acceptance += _accepted(ordered, permitted)
+    book.acceptance.append(_accepted(page, ordered, permitted))
 
 
 def _breaker_banner(page: Any, rows: pd.DataFrame, verdicts: str) -> None:
     """Say how many feeders pass their settings."""
     first = rows.drop_duplicates("device")
     many, bad = int((first["met"].astype(str) != "").sum()), int((first["met"].astype(str) == "no").sum())
-    if not many:
-        banner(page, tr("No feeder has a breaker with a setting"), "doubt")
-        return
+    verdicts = absolute_coordinate(verdicts)
     count = f'COUNTIF({verdicts},"{tr(NO)}")'
     all_of = f'({count}+COUNTIF({verdicts},"{tr(YES)}"))'
-    text = sentence(tr("{bad} of {many} feeders beyond the setting of their breakers"), bad=(count, bad), many=(all_of, many))
-    banner(page, text, "good", f"{_fixed(count)}>0")
-
-
-def _fixed(formula: str) -> str:
-    """Return a formula with absolute addresses, as a conditional format over several cells needs it."""
-    return formula if "$" in formula else re.sub(r"\b([A-Z]{1,3})(\d+)\b", r"$\1$\2", formula)
+    told = sentence(tr("{bad} of {many} feeders beyond the setting of their breakers"), bad=(count, bad), many=(all_of, many))
+    none = sentence(tr("No feeder has a breaker with a setting"))
+    text = Formula(f"IF({all_of}=0,{none.text},{told.text})", (told if many else none).value)
+    banner(page, text, "good", f"{count}>0", doubt=f"{all_of}=0")
 
 
 def _breaker_rows(rows: pd.DataFrame, levels: list[float], limit: tuple[str, float]) -> Iterator[tuple[Any, ...]]:
@@ -169,14 +164,16 @@ def _breaker_rows(rows: pd.DataFrame, levels: list[float], limit: tuple[str, flo
         yield device_told(device), setting, peak, first["peak_s"], share, holds, first["trips"], *times
 
 
-def _accepted(rows: pd.DataFrame, permitted: float) -> Iterator[Accepted]:
-    """Yield the feeder with the highest share of its setting."""
+def _accepted(page: Page, rows: pd.DataFrame, permitted: float) -> Accepted:
+    """Return the feeder with the highest share of its setting; without settings a row for those that are filled in."""
     rated = rows[rows["share_percent"].notna()]
+    share: float | str = ""
+    place, when = tr("see sheet {sheet}", sheet=page.sheet.title), ""
     if len(rated):
         worst = rated.iloc[int(rated["share_percent"].argmax())]
         share = 100.0 * float(worst["peak_a"]) / float(worst["setting_a"])
-        when = format_time(worst["peak_s"]) if known(worst["peak_s"]) else ""
-        yield Accepted(
-            PEAK, "breaker_percent", permitted, "%", "at_most", Formula("MAX({breaker_shares})", share), str(worst["device"]),
-            when, "user", "settings of the inputs",
-        )  # fmt: skip
+        place, when = str(worst["device"]), format_time(worst["peak_s"]) if known(worst["peak_s"]) else ""
+    found = Formula('IF(COUNT({breaker_shares})=0,"",MAX({breaker_shares}))', share)
+    return Accepted(
+        PEAK, "breaker_percent", permitted, "%", "at_most", found, place, when, "user", "settings of the inputs", bare=NO_SETTING,
+    )  # fmt: skip

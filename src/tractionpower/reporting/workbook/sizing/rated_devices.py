@@ -25,7 +25,7 @@ SHEETS = (
         ("feeder", "cabin_feeder", "switch"),
     ),
     (mark("Contact line"), mark("Contact line: load and rating of every section"), ("contact_line",)),
-    (mark("Return circuit ratings"), mark("Return cables and rails: load and rating"), ("return_feeder", "rails")),
+    (mark("Return circuit ratings"), mark("Return feeders and rails: load and rating"), ("return_feeder", "rails")),
 )
 """Sheets with their titles, and the kinds of devices on each."""
 

@@ -29,6 +29,8 @@ from tractionpower.reporting.workbook.sizing.rated_cells import (
 )
 
 RULES = mark("rules")
+MOST_PRINTED = 150
+"""Devices whose loads by window are printed whole; of more the first, as the foot of the page says."""
 
 _COLUMNS = (
     Column("device", widest=34, key="device"),
@@ -93,7 +95,7 @@ def _loads(book: Book, rows: pd.DataFrame) -> None:
         Column("kind", widest=28),
         *(Column(tr("{window} [A]", window=window_in_words(window)), "0") for window in windows),
     )
-    page.table(columns, _matrix(rows, windows), frozen=True)
+    page.table(columns, _matrix(rows, windows), frozen=True, printed=MOST_PRINTED)
 
 
 def _matrix(rows: pd.DataFrame, windows: list[float]) -> Iterator[tuple[Any, ...]]:

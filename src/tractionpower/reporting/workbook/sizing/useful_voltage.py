@@ -22,11 +22,11 @@ from tractionpower.reporting.workbook.sizing.judging import (
     NO,
     UNRATED,
     YES,
+    bound_line,
     colour_red,
     colour_word,
     judged,
     known,
-    limit_line,
 )
 from tractionpower.reporting.workbook.sizing.rated_cells import keyed
 from tractionpower.results.spells import TOLERANCE_V
@@ -36,9 +36,6 @@ from tractionpower.studies.ratings.verdicts import ZONES
 WEIGHTED, MEAN = mark("weighted by current [V]"), mark("mean over time [V]")
 MOST_ROWS = 3000
 """Rows of a table of single trains; with more, the lowest are shown."""
-
-BELOW = f"{TOLERANCE_V:g}"
-"""By how much a mean may be below the limit [V]."""
 
 _SUMS = {
     "weighted": ("power", "current", "1000*{power}/{current}", 1000.0),
@@ -97,7 +94,7 @@ def useful_limit(facts: Facts) -> Limit | None:
 
 def _useful(book: Book, rows: pd.DataFrame, limit: Limit | None) -> None:
     page = book.page("Useful voltage", "Mean useful voltage of zones and trains, by both definitions")
-    cell = _limit_line(page, limit)
+    below = _limit_line(page, limit)
     stay_s = book.facts.scenario.sizing.useful_voltage.shortest_stay_s
     page.note(
         tr(
@@ -111,7 +108,7 @@ def _useful(book: Book, rows: pd.DataFrame, limit: Limit | None) -> None:
     )
     page.note(limit_note(limit))
     zones, trains = rows[rows["kind"] == "zone"], rows[rows["kind"] == "train"]
-    judge = _Judge(limit, cell)
+    judge = _Judge(limit, below)
     whole = zones[zones["window"] == "run"]
     if len(whole):
         page.section("Zones, whole run")
@@ -133,15 +130,17 @@ def _useful(book: Book, rows: pd.DataFrame, limit: Limit | None) -> None:
 
 
 def _limit_line(page: Page, limit: Limit | None) -> str:
-    """Write the limit above the tables and return its address; empty without one."""
-    return "" if limit is None else limit_line(page, tr("Lowest permitted"), limit.name, limit.value, limit.unit)
+    """Write the limit above the tables and return the test that a mean is below it; empty without one."""
+    if limit is None:
+        return ""
+    return bound_line(page, tr("Lowest permitted"), (limit.name, limit.value, limit.unit), TOLERANCE_V).beyond(is_floor=True)
 
 
 class _Judge:
-    """Means held against a limit: its value, and the address of the cell with it."""
+    """Means held against a limit: its value, and the test that a mean is below it."""
 
-    def __init__(self, limit: Limit | None, cell: str) -> None:
-        self.limit, self.cell = limit, cell
+    def __init__(self, limit: Limit | None, below: str) -> None:
+        self.limit, self.below = limit, below
 
     def table(self, page: Page, first: Column, rows: pd.DataFrame, spans: tuple[Column, ...] = ()) -> Block:
         """Write a table of means; those below the limit show red."""
@@ -153,9 +152,9 @@ class _Judge:
 
     def colour(self, block: Block, areas: tuple[str, ...]) -> None:
         """Let means below the limit show red."""
-        if self.cell:
+        if self.below:
             for area in areas:
-                colour_red(block, area, f"<{self.cell}-{BELOW}")
+                colour_red(block, area, self.below)
 
     def cells(self, row: Mapping[Any, Any]) -> dict[str, Any]:
         """Return the cells of a row of table ``useful_voltage``."""
@@ -169,7 +168,7 @@ class _Judge:
         if self.limit is None or not values:
             return tr(UNRATED)
         word = NO if min(values) < self.limit.value - TOLERANCE_V else YES
-        text = f'IF(MIN({{weighted}},{{mean}})<{self.cell}-{BELOW},"{tr(NO)}","{tr(YES)}")'
+        text = f'IF(MIN({{weighted}},{{mean}}){self.below},"{tr(NO)}","{tr(YES)}")'
         return judged(text, word, str(row["met"]))
 
 
