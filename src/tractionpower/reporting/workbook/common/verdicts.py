@@ -85,6 +85,16 @@ class Comparison:
         return rounding if self.tolerance in ("", "0") else f"-N({self.tolerance}){rounding}"
 
 
+def beyond(limit: str, tolerance: str, *, is_floor: bool) -> str:
+    """Return the end of a test that a number is beyond a limit, such as ``<$B$3-$E$3`` with room for rounding.
+
+    No number is beyond a limit that is none.
+    """
+    side, sign, never = ("<", "-", "-1E+99") if is_floor else (">", "+", "1E+99")
+    slack = f"{sign}N({tolerance})" if tolerance else ""
+    return f"{side}IF(ISNUMBER({limit}),{limit}{slack}{sign}{ROUNDING}*ABS({limit}),{never})"
+
+
 def same_as(cell: str) -> str:
     """Return a formula that repeats a number; nothing where there is none, which a bare reference would make 0 of."""
     return f'IF(ISNUMBER({cell}),{cell},"")'

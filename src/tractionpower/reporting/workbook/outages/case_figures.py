@@ -26,6 +26,10 @@ COUNTS = frozenset({"overloaded", "late_trains", "stuck_trains", "dark_trains", 
 """Figures that are 0 also in cases that were not computed."""
 
 
+DEVICES = ("utilisation_device", "breaker_device")
+"""Figures of a case that name a device."""
+
+
 def limit_name(limit: str) -> str:
     """Return the name of the cell with a limit on the sheet of the cases' figures."""
     return f"case_limit_{limit}"

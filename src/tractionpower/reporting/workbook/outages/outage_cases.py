@@ -9,12 +9,14 @@ from typing import Any
 from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.facts.outages import COMPUTED, Outages
 from tractionpower.reporting.texts import mark, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import Accepted
+from tractionpower.reporting.workbook.common.acceptance import OPEN, Accepted
+from tractionpower.reporting.workbook.common.verdicts import ROUNDING
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column, Page
 from tractionpower.reporting.workbook.outages import outage_reasons
 from tractionpower.reporting.workbook.outages.case_figures import (
+    DEVICES,
     FIRST,
     NOT_COMPUTED,
     Case,
@@ -193,10 +195,6 @@ LIMIT_WORDS = {
 }
 
 
-DEVICES = ("utilisation_device", "breaker_device")
-"""Figures of a case that name a device."""
-
-
 def _columns(sheet: Sheet, shown: Sequence[Column]) -> list[Column]:
     columns = [*FIRST, Column(HOLDS, "beside", key=HOLDS)]
     for column in shown:
@@ -240,12 +238,15 @@ def _holds(outages: Outages, case: Case, checks: Sequence[Check], limits: Mappin
     )
     failed = [not check.is_met(case) for check in checks]
     by_numbers = [known(figure_of(case, check.figure)) and _is_beyond(check, case) for check in checks]
-    return judged(f'IF(OR({tests}),"{tr(NO)}","{tr(YES)}")', NO if any(by_numbers) else YES, NO if any(failed) else YES)
+    limited = ",".join(dict.fromkeys(limits[check.limit].limit for check in checks))
+    text = f'IF(OR({tests}),"{tr(NO)}",IF(COUNT({limited})=0,"{tr(OPEN)}","{tr(YES)}"))'
+    return judged(text, NO if any(by_numbers) else YES, NO if any(failed) else YES)
 
 
 def _is_beyond(check: Check, case: Case) -> bool:
     value = float(case[check.figure])
-    return value < check.value - check.tolerance if check.is_floor else value > check.value + check.tolerance
+    slack = check.tolerance + float(ROUNDING) * abs(check.value)
+    return value < check.value - slack if check.is_floor else value > check.value + slack
 
 
 def _accept(book: Book, outages: Outages) -> None:

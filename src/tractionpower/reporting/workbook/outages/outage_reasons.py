@@ -8,14 +8,17 @@ from typing import Any
 
 from openpyxl.formatting.rule import CellIsRule
 
+from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.facts.outages import COMPUTED, Outages
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.common.acceptance import LEAST_TOLERANCE
+from tractionpower.reporting.workbook.common.verdicts import ROUNDING, beyond
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL, fill
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column
 from tractionpower.reporting.workbook.outages.case_figures import (
+    DEVICES,
     FIRST,
     figure_of,
     grid_in_words,
@@ -99,14 +102,13 @@ class Reasons:
 
     def is_beyond(self, check: Check, case: Case) -> bool:
         """Return whether a case fails at a check, as the formulas have it."""
-        return known(figure_of(case, check.figure)) and check.beyond(case) > check.tolerance
+        return known(figure_of(case, check.figure)) and check.beyond(case) > check.tolerance + float(ROUNDING) * abs(check.value)
 
     def bound(self, check: Check) -> str:
         """Return the test that a number is beyond the limit of a check, by the names of the sheets of cases."""
-        side, sign = ("<", "-") if check.is_floor else (">", "+")
         has_cell = check.tolerance >= LEAST_TOLERANCE
         tolerance = f"{{{tolerance_of(check.limit)}}}" if has_cell else f"{check.tolerance:g}".upper() if check.tolerance else ""
-        return f"{side}{{{limit_name(check.limit)}}}{f'{sign}{tolerance}' if tolerance else ''}"
+        return beyond(f"{{{limit_name(check.limit)}}}", tolerance, is_floor=check.is_floor)
 
     def test(self, check: Check, case: Case) -> str:
         """Return the formula that says whether a case fails at a check."""
@@ -161,7 +163,10 @@ class Reasons:
         of: tuple[str, object] = ('""', "")
         column, words = _OF.get(check.figure, ("", ""))
         if column and case.get(column) and range_name(column) in self.names:
-            told = sentence(tr(words), name=(f"INDEX({{{range_name(column)}}},{row})", case[column]))
+            told = sentence(
+                tr(words),
+                name=(f"INDEX({{{range_name(column)}}},{row})", device_told(case[column]) if column in DEVICES else case[column]),
+            )
             of = (told.text, told.value)
         text = (
             tr("{value} {unit}{of}, below {limit} {unit}") if check.is_floor else tr("{value} {unit}{of}, above {limit} {unit}")

@@ -9,6 +9,7 @@ from typing import Any
 
 from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages
 from tractionpower.reporting.texts import mark, tr
+from tractionpower.reporting.workbook.common.acceptance import OPEN
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -159,11 +160,14 @@ def _holds(outages: Outages, group: _Group) -> Formula | str:
     """Return whether all cases of an outage hold on all sheets of cases."""
     sheets = [sheet.key for sheet in SHEETS if _is_judged(outages, sheet)]
     size = group.rows[1] - group.rows[0] + 1
-    counts = "+".join(f'COUNTIF({span(f"{key}_hold", group.rows)},"{tr(YES)}")' for key in sheets)
+    counts, opens = (
+        "+".join(f'COUNTIF({span(f"{key}_hold", group.rows)},"{tr(word)}")' for key in sheets) for word in (YES, OPEN)
+    )
     word = NO if any(map(outages.failures, group.cases.values())) else YES
     if size != len(group.cases) or not sheets:
         return tr(word)
-    return judged(f'IF({counts}={size * len(sheets)},"{tr(YES)}","{tr(NO)}")', word, word)
+    kept = f'IF({counts}=0,"{tr(OPEN)}","{tr(YES)}")'
+    return judged(f'IF({counts}+{opens}={size * len(sheets)},{kept},"{tr(NO)}")', word, word)
 
 
 def _is_judged(outages: Outages, sheet: Any) -> bool:
@@ -216,7 +220,7 @@ def _colour(book: Book, block: Block, limits: Mapping[str, Bound], outages: Outa
 
 
 def _banner(page: Page, outages: Outages, block: Block, groups: Sequence[_Group]) -> None:
-    """Say how many outages fail; the first rows of the table are those with nothing out."""
+    """Say how many outages fail, and how many of them at more than nothing out does; with that the table begins."""
     base = sum(group.first["kind"] == "base" for group in groups)
     many = len(groups) - base
     if not many:
@@ -225,5 +229,10 @@ def _banner(page: Page, outages: Outages, block: Block, groups: Sequence[_Group]
     failing = sum(any(map(outages.failures, group.cases.values())) for group in groups[base:])
     area = f"$C${block.first + base}:$C${block.last}"
     count = f'COUNTIF({area},"{tr(NO)}")'
+    worse = sum(any(map(outages.is_worse, group.cases.values())) for group in groups[base:])
     text = sentence(tr("{failing} of {all} outages fail"), failing=(count, failing), all=(str(many), many))
-    banner(page, text, "good", f"{count}>0", BANNER)
+    more = sentence(
+        tr(", {worse} of them at something that holds with nothing out"), worse=(f'COUNTIF({{{WORSE_RANGE}}},"{tr(YES)}")', worse)
+    )
+    shown = Formula(f'{text.text}&IF({count}>0,{more.text},"")', f"{text.value}{more.value if failing else ''}")
+    banner(page, shown, "good", f"{count}>0", BANNER)

@@ -12,7 +12,7 @@ from openpyxl.formatting.rule import CellIsRule, FormulaRule
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.common.acceptance import LEAST_TOLERANCE, OPEN, tolerance_name
-from tractionpower.reporting.workbook.common.verdicts import Comparison, Words, same_as
+from tractionpower.reporting.workbook.common.verdicts import Comparison, Words, beyond, same_as
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, PLAIN_FILL, RED_FILL, fill
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Block, Page
@@ -62,9 +62,8 @@ class Bound:
     tolerance: str = ""
 
     def beyond(self, *, is_floor: bool) -> str:
-        """Return the test that a number is beyond it, such as ``<$B$3-$E$3``."""
-        side, sign = ("<", "-") if is_floor else (">", "+")
-        return f"{side}{self.limit}{sign}{self.tolerance}" if self.tolerance else f"{side}{self.limit}"
+        """Return the test that a number is beyond it, such as ``<$B$3-$E$3`` with room for rounding."""
+        return beyond(self.limit, self.tolerance, is_floor=is_floor)
 
 
 def bound_line(page: Page, label: str, limit: tuple[str, float, str], tolerance: float) -> Bound:
@@ -86,7 +85,7 @@ def bound_line(page: Page, label: str, limit: tuple[str, float, str], tolerance:
     if tolerance < LEAST_TOLERANCE:
         return Bound(address, f"{tolerance:g}" if tolerance else "")
     page.put(row, 4, tr("tolerance"), "plain")
-    page.put(row, 5, Formula(f"{{{tolerance_name(f'limit_{name}')}}}", tolerance), "editable general")
+    page.put(row, 5, Formula(same_as(f"{{{tolerance_name(f'limit_{name}')}}}"), tolerance), "editable general")
     page.widen(0.0, 0.0, 0.0, 10.0)
     return Bound(address, f"$E${row}")
 

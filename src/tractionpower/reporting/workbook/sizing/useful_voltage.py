@@ -11,7 +11,7 @@ import pandas as pd
 from tractionpower.model.base import format_time
 from tractionpower.model.limits import USEFUL_NAMES, Limit
 from tractionpower.reporting.texts import mark, number, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import Accepted
+from tractionpower.reporting.workbook.common.acceptance import OPEN, Accepted
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
@@ -22,6 +22,7 @@ from tractionpower.reporting.workbook.sizing.judging import (
     NO,
     UNRATED,
     YES,
+    Bound,
     bound_line,
     colour_red,
     colour_word,
@@ -94,7 +95,7 @@ def useful_limit(facts: Facts) -> Limit | None:
 
 def _useful(book: Book, rows: pd.DataFrame, limit: Limit | None) -> None:
     page = book.page("Useful voltage", "Mean useful voltage of zones and trains, by both definitions")
-    below = _limit_line(page, limit)
+    bound = _limit_line(page, limit)
     stay_s = book.facts.scenario.sizing.useful_voltage.shortest_stay_s
     page.note(
         tr(
@@ -108,7 +109,7 @@ def _useful(book: Book, rows: pd.DataFrame, limit: Limit | None) -> None:
     )
     page.note(limit_note(limit))
     zones, trains = rows[rows["kind"] == "zone"], rows[rows["kind"] == "train"]
-    judge = _Judge(limit, below)
+    judge = _Judge(limit, bound)
     whole = zones[zones["window"] == "run"]
     if len(whole):
         page.section("Zones, whole run")
@@ -129,18 +130,19 @@ def _useful(book: Book, rows: pd.DataFrame, limit: Limit | None) -> None:
         judge.table(page, Column("train", widest=40, key="subject"), lowest)
 
 
-def _limit_line(page: Page, limit: Limit | None) -> str:
-    """Write the limit above the tables and return the test that a mean is below it; empty without one."""
+def _limit_line(page: Page, limit: Limit | None) -> Bound | None:
+    """Write the limit above the tables and return where it stands; None without one."""
     if limit is None:
-        return ""
-    return bound_line(page, tr("Lowest permitted"), (limit.name, limit.value, limit.unit), TOLERANCE_V).beyond(is_floor=True)
+        return None
+    return bound_line(page, tr("Lowest permitted"), (limit.name, limit.value, limit.unit), TOLERANCE_V)
 
 
 class _Judge:
-    """Means held against a limit: its value, and the test that a mean is below it."""
+    """Means held against a limit: its value, the address of its cell, and the test that a mean is below it."""
 
-    def __init__(self, limit: Limit | None, below: str) -> None:
-        self.limit, self.below = limit, below
+    def __init__(self, limit: Limit | None, bound: Bound | None) -> None:
+        self.limit, self.limit_cell = limit, "" if bound is None else bound.limit
+        self.below = "" if bound is None else bound.beyond(is_floor=True)
 
     def table(self, page: Page, first: Column, rows: pd.DataFrame, spans: tuple[Column, ...] = ()) -> Block:
         """Write a table of means; those below the limit show red."""
@@ -168,7 +170,9 @@ class _Judge:
         if self.limit is None or not values:
             return tr(UNRATED)
         word = NO if min(values) < self.limit.value - TOLERANCE_V else YES
-        text = f'IF(MIN({{weighted}},{{mean}}){self.below},"{tr(NO)}","{tr(YES)}")'
+        numbers = f"ISNUMBER({self.limit_cell}),COUNT({{weighted}},{{mean}})>0"
+        held = f'IF(MIN({{weighted}},{{mean}}){self.below},"{tr(NO)}","{tr(YES)}")'
+        text = f'IF(AND({numbers}),{held},"{tr(OPEN)}")'
         return judged(text, word, str(row["met"]))
 
 
