@@ -129,6 +129,20 @@ def test_a_value_is_held_against_its_limit(book, sense, found, tolerance, word):
     assert cached[f"{head.column_letter}{head.row + 1}"] == word
 
 
+def test_tolerances_are_named_cells_that_can_be_edited_and_later_rows_refer_to_them(book):
+    book.subject.run = {}
+    book.acceptance += [Accepted(name, "u_min2", 2000.0, "V", "at_least", 1999.95, tolerance=0.1) for name in "ab"]
+    book.acceptance.append(Accepted("c", "t_max2", 300.0, "s", "at_most", 300.0000001, tolerance=1e-6))
+    sheet, cached = finished(book)
+    first, second, third = (sheet[f"G{row}"] for row in (10, 11, 12))
+    assert (first.value, second.value, third.value) == (0.1, "=tolerance_u_min2", None)
+    assert first.fill.start_color.rgb.endswith("FFF9C4")
+    assert not second.fill.start_color.rgb.endswith("FFF9C4")
+    assert book.workbook.defined_names["tolerance_u_min2"].attr_text == "'Acceptance'!$G$10"
+    assert [cached[f"I{row}"] for row in (10, 11, 12)] == ["met"] * 3
+    assert "-1E-06" in sheet["I12"].value
+
+
 def test_what_the_program_says_otherwise_than_the_numbers_is_a_word_of_its_own(book):
     book.subject.run = {}
     book.acceptance.append(Accepted("x", "x", 100.0, "", "at_most", 1.0, met=False))

@@ -51,7 +51,8 @@ def test_the_cover_says_how_many_fail_and_by_which_outage(book, study):
     assert f"{failing} of {len(groups)} outages fail" in texts(book["Outages"])
     assert any(text.startswith("With nothing out, normal grid voltage: holds.") for text in said)
     worst = min((c for c in seen.by_id.values() if c["useful_zone_v"]), key=lambda case: case["useful_zone_v"])
-    assert any(text.startswith(f"{seen.told(worst['case'])}: {worst['useful_zone_v']:.0f} V (zone A - B)") for text in said)
+    told = f"worst: {worst['words']}, {worst['grid']} grid voltage: {worst['useful_zone_v']:.0f} V (zone A - B), below 2700 V"
+    assert any(text.endswith(told) for text in said)
     assert any("failed: RuntimeError: the worker process died twice" in text for text in said)
     assert any("refused: supply.substations[X]: a contradiction another one" in text for text in said)
 
@@ -69,7 +70,9 @@ def test_a_row_for_each_outage_with_the_grid_voltages_beside_each_other(book, st
         known = [case["utilisation_percent"] for case in cases.values() if case["utilisation_percent"] is not None]
         assert rows[words]["highest utilisation [%]"] == pytest.approx(max(known))
         assert rows[words]["holds"] == ("no" if any(seen.failures(case) for case in cases.values()) else "yes")
-    assert "low voltage (low)" in rows["Substation 9, bypassed"]["why, and at which grid voltage"]
+        told = rows[words]["at more than with nothing out"]
+        assert told == (None if cases["normal"]["kind"] == "base" else "yes" if any(map(seen.is_worse, cases.values())) else "no")
+    assert "; low: low voltage, " in rows["Substation 9, bypassed"]["why, and at which grid voltage"]
 
 
 def test_every_case_is_judged_on_the_sheet_of_its_figures(book, study):
@@ -154,6 +157,55 @@ def test_verdicts_follow_an_edited_limit(file, study, tmp_path):
         turned += fails and not any(seen.failures(case) for case in cases.values())
         assert values[words] == ("no" if fails else "yes")
     assert turned > 0
+
+
+@needs_office
+def test_nothing_fails_any_more_when_every_limit_is_wide_open(file, study, tmp_path):
+    seen = Outages(*study)
+    edited = load_workbook(file)
+    floors = {check.limit for check in seen.checks if check.is_floor}
+    for name in edited.defined_names:
+        limit = name.removeprefix("case_").removeprefix("limit_")
+        if name.endswith(f"limit_{limit}"):  # on sheet Acceptance, or on that of the cases where the run told no verdict
+            ((sheet, cell),) = edited.defined_names[name].destinations
+            place = edited[sheet][cell.replace("$", "")]
+            if not isinstance(place.value, str):
+                place.value = 0.0 if limit in floors else 1e6
+    edited.save(tmp_path / "open.xlsx")
+    book = load_workbook(recalculated([tmp_path / "open.xlsx"])[0], data_only=True)
+    computed = [case for case in seen.by_id.values() if case["status"] in ("complete", "flagged")]
+    judged = [figure for figure in ("lowest_voltage_v", "useful_zone_v", "utilisation_percent", "worst_late_s", "trips")]
+    assert len({check.figure for check in seen.checks} & set(judged)) == len(judged)
+    rows = [row for row in read_table(book["What fails"]) if row["status"] in ("complete", "flagged")]
+    assert len(rows) == len(computed)
+    assert {(row["fails at"] or "", row["how it stands"] or "") for row in rows} == {("", "")}
+    for name in ("Outage voltages", "Outage loads", "Outage trains"):
+        assert {row["holds"] for row in read_table(book[name])} <= {"yes", "not computed"}
+    groups = [cases for first, cases in seen.groups() if first["kind"] != "base"]
+    left = sum(any(case["status"] not in ("complete", "flagged") for case in cases.values()) for cases in groups)
+    said = texts(book["Cover"])
+    assert f"{left} of {len(groups)} outages fail" in said
+    assert any(text.startswith("With nothing out, normal grid voltage: holds.") for text in said)
+    assert not any("worst:" in text for text in said)
+
+
+def test_without_ratings_the_heat_map_shows_currents_of_those_with_nothing_out(study, write_values):
+    full, scenario = study
+    rows = full.table("case_devices").assign(utilisation_percent=float("nan"))
+    sources = dict(full._source) | {"case_devices": table("case_devices", rows.to_dict("records"))}
+    book = write_values(Results(full.run, [], sources, scenario), scenario)
+    seen = Outages(*study)
+    peaks = rows.set_index(["device", "case"])["peak_a"]
+    for row in read_table(book["Outage heat map"]):
+        for first, cases in seen.groups():
+            if first["kind"] != "base" and first["words"] in row:
+                own = [
+                    100.0 * peaks[row["device"], case["case"]] / peaks[row["device"], base["case"]]
+                    for case in cases.values()
+                    for base in seen.by_id.values()
+                    if base["kind"] == "base" and base["grid"] == case["grid"] and (row["device"], case["case"]) in peaks
+                ]
+                assert row[first["words"]] == pytest.approx(max(own))
 
 
 def test_the_device_envelope_names_the_outage(book, study):

@@ -26,8 +26,16 @@ def test_every_contract_is_judged_against_its_own_cell(book, formulas, study):
     rows = [row for row in read_table(book["Acceptance"]) if row["what is judged"] == "highest demand of a quarter of an hour"]
     assert {row["place of the worst"] for row in rows} == {f"supply point {name}" for name in contracts.index}
     limits = [row["limit value"] for row in read_table(formulas["Acceptance"]) if str(row["limit"]) == "contract_power_kw"]
-    assert len(set(limits)) == len(contracts)
-    assert all(limit.startswith("=contract_") for limit in limits)
+    assert len(set(limits)) == len(contracts) + 1
+    assert sum(limit.startswith("=contract_") for limit in limits) == len(contracts)
+
+
+def test_points_without_a_contract_are_told_and_count_as_no_limit(book):
+    rows = read_table(book["Acceptance"])
+    (bare,) = [row for row in rows if row["verdict"] == "no contract"]
+    assert (bare["found"], bare["margin"], bare["place of the worst"]) == (None, None, "see sheet Demand")
+    ((sheet, cell),) = book.defined_names["acceptance_all"].destinations
+    assert book[sheet][cell.replace("$", "")].value == len(rows) - 1
 
 
 def test_shares_of_a_zone_add_up(book):

@@ -131,9 +131,8 @@ def add(book: Book) -> None:
     page = book.page("Acceptance", "Acceptance: what was found against what is allowed")
     book.pages.insert(1, book.pages.pop())
     page.note(
-        "Yellow cells can be edited, limits and tolerances: margins, verdicts and the cover follow. A limit whose status is not"
-        " 'verified' is an editable value of the limits table: the check is against that value, which is no statement about a"
-        " standard."
+        "Yellow cells can be edited: margins, verdicts and the cover follow. A limit whose status is not 'verified' is an"
+        " editable value of the limits table: the check is against that value, which is no statement about a standard."
     )
     counts_row = _room_for_counts(page)
     block = page.table(_COLUMNS, _lines(rows), frozen=True)
@@ -348,5 +347,5 @@ def _count(book: Book, page: Page, row: int, words: Sequence[str]) -> None:
         book.define(name, page, f"C{row}")
         row += 1
     page.put(row, 2, tr("all"), "label")
-    page.put(row, 3, Formula("+".join(f"{{{name}}}" for name in COUNTS), len(words)), "sum 0")
+    page.put(row, 3, Formula("+".join(f"{{{name}}}" for name in COUNTS), sum(map(words.count, COUNTS.values()))), "sum 0")
     book.define(ALL, page, f"C{row}")

@@ -261,7 +261,7 @@ def _accept(book: Book, outages: Outages) -> None:
         worst = min(numbers) if check.is_floor else max(numbers)
         found = Formula(f"{'MIN' if check.is_floor else 'MAX'}({{{range_name(check.figure)}}})", worst)
         place, time, status, source = (str(verdict[key] or "") for key in ("place", "time", "status", "source"))
-        place = _place(outages, place)
+        place = _place(outages, place) if worst or check.value else ""  # nothing has happened anywhere
         book.acceptance.append(
             Accepted(
                 check.name, check.limit, check.value, check.unit, sense_of(verdict), found, place, time, status, source,

@@ -88,10 +88,14 @@ def _base(reasons: Reasons, base: list[Any]) -> Formula:
 def _failing(reasons: Reasons) -> Iterator[Said]:
     """Tell for each limit that outages pass in how many cases, and the worst; and for all others together whether some do."""
     others = []
+    label = tr("Fails at")
     for check in reasons.checks:
         count, cases = failing(reasons, check)
         if cases:
-            yield tr("Fails at: {what}", what=recorded(check.name)), _worst(reasons, check, count, cases), "neutral"
+            told = _worst(reasons, check, count, cases)
+            name = f"{recorded(check.name)}: "
+            yield label, Formula(f'"{_quoted(name)}"&{told.text}', f"{name}{told.value}"), "neutral"
+            label = ""
         else:
             others.append((check, count))
     if others:

@@ -83,8 +83,8 @@ def _bare(book: Book, outages: Outages, rows: pd.DataFrame) -> None:
         tr(
             "No device has a rating, so there is no utilisation to show: highest currents are held against those with nothing"
             " out at the same grid voltage. 100: as with nothing out; the highest of all grid voltages. Devices that carry less"
-            " than {least} A with nothing out are left out, and of many the {devices} devices and {outages} outages with the highest"
-            " values are shown.",
+            " than {least} A with nothing out are left out, and of many the {devices} devices and {outages} outages with the"
+            " highest values are shown.",
             least=number(LEAST_A), devices=MOST_DEVICES, outages=MOST_OUTAGES,
         )
     )  # fmt: skip

@@ -83,7 +83,7 @@ def bound_line(page: Page, label: str, limit: tuple[str, float, str], tolerance:
     name, value, unit = limit
     row, address = page.next, limit_line(page, label, name, value, unit)
     if tolerance < LEAST_TOLERANCE:
-        return Bound(address, f"{tolerance:g}" if tolerance else "")
+        return Bound(address, f"{tolerance:g}".upper() if tolerance else "")
     page.put(row, 4, tr("tolerance"), "plain")
     page.put(row, 5, Formula(same_as(f"{{{tolerance_name(f'limit_{name}')}}}"), tolerance), "editable general")
     page.widen(0.0, 0.0, 0.0, 10.0)
