@@ -137,7 +137,7 @@ def add(book: Book) -> None:
     counts_row = _room_for_counts(page)
     block = page.table(_COLUMNS, _lines(rows), frozen=True)
     _name_limits(book, page, block, rows)
-    colour_verdicts(block)
+    colour_words(block.sheet, block.cells("verdict"))
     book.define("acceptance_verdicts", page, block.cells("verdict"))
     for name, key in (("names", "what is judged"), ("found", "found"), ("limits", "limit")):
         book.define(f"acceptance_{name}", page, block.cells(key))
@@ -171,11 +171,6 @@ def group_of(row: Accepted) -> str:
 def verdict_word(verdict: dict[str, Any]) -> str:
     """Return a verdict of ``run.json`` in a word, in the language of the report."""
     return tr({True: MET, False: VIOLATED}.get(verdict["met"], OPEN))
-
-
-def colour_verdicts(block: Block) -> None:
-    """Let the verdicts of a table show green, red or amber by their word."""
-    colour_words(block.sheet, block.cells("verdict"))
 
 
 def colour_words(sheet: Any, area: str) -> None:

@@ -20,6 +20,7 @@ from tractionpower.reporting.workbook.frame.cells import clean, days, put, short
 from tractionpower.reporting.workbook.frame.editing import EDITABLE, MOST, only_numbers
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.paper import EMPTY_WIDTH, LETTER_WIDTHS, break_before_charts
+from tractionpower.reporting.workbook.frame.widths import header_width, shown_width, told_apart
 
 if TYPE_CHECKING:
     from tractionpower.reporting.workbook.frame.book import Book
@@ -27,14 +28,10 @@ if TYPE_CHECKING:
 NOTE_WIDTH = 118
 """Characters in a line of a note."""
 
-LONGEST_WORD = 24
-"""Characters of a word in a heading that its column makes room for."""
 
 SHEET_NAME_LENGTH = 31
 """Characters of the name of a sheet, the limit of Excel."""
 
-HEADING_LENGTH = 80
-"""Characters of a heading; Excel's limit is 255."""
 
 PADDING = 2.5
 """Width of a column beyond that of its texts [characters]."""
@@ -58,7 +55,6 @@ CHART_ROWS = 30
 """Rows that a chart covers."""
 
 _BARE = {"km": mark("place [km]"), "kmh": mark("speed [km/h]"), "permille": mark("slope [‰]"), "unit": mark("type of unit")}
-_FIXED = {"0": 0, "0.0": 1, "0.00": 2, "0.000": 3, "0.0000": 4, "0.00000": 5}
 
 
 def heading_of(name: str) -> str:
@@ -197,8 +193,8 @@ class Page:
         """
         top = self.next
         shown = [tr(column.heading) for column in columns]
-        longest = [_header_width(heading) for heading in shown]
-        for number, heading in enumerate(_told_apart(shown), 1):
+        longest = [header_width(heading) for heading in shown]
+        for number, heading in enumerate(told_apart(shown), 1):
             put(self.sheet, top, number, heading, self.styles["head"])
         keys = [(column.key, get_column_letter(number)) for number, column in enumerate(columns, 1) if column.key]
         styles = [self.styles[column.style] for column in columns]
@@ -210,7 +206,7 @@ class Page:
                     self.book.pending.append((self, self.next, k + 1, value, {key: f"{at}{self.next}" for key, at in keys}))
                     value = value.value  # noqa: PLW2901 - what is shown until the formula is written
                 told = days(value) if column.style == "time" else value
-                width = _shown_width(put(self.sheet, self.next, k + 1, told, styles[k]).value, column.style)
+                width = shown_width(put(self.sheet, self.next, k + 1, told, styles[k]).value, column.style)
                 longest[k] = max(longest[k], min(width, column.widest))
                 lines = max(lines, math.ceil(width / (column.widest + PADDING)))
             if lines > 1:
@@ -322,34 +318,3 @@ class Page:
         sheet.oddHeader.right.text = "&A"
         sheet.oddFooter.left.text = shorten(self.book.report.company or "tractionpower", 80).replace("&", "&&")
         sheet.oddFooter.right.text = tr("page &P of &N")
-
-
-def _told_apart(headings: Sequence[str]) -> list[str]:
-    """Return headings as Excel wants them in a filtered table: short, and no two that differ by case alone."""
-    shown: list[str] = []
-    taken: set[str] = set()
-    for each in headings:
-        short = heading = shorten(each, HEADING_LENGTH)
-        count = 1
-        while heading.casefold() in taken:
-            count += 1
-            heading = f"{short} ({count})"
-        taken.add(heading.casefold())
-        shown.append(heading)
-    return shown
-
-
-def _header_width(heading: str) -> float:
-    """Return the width that a heading needs when it is broken at its blanks, with room for the button of the filter."""
-    word = min(max(map(len, heading.split()), default=0), LONGEST_WORD)
-    return max(7.0, word + 3.0, len(heading) / 3.0)
-
-
-def _shown_width(value: Any, style: str) -> float:
-    if value is None:
-        return 0.0
-    if isinstance(value, str):
-        return max(map(len, value.split("\n")), default=0) * 1.05
-    if style in _FIXED:
-        return len(f"{value:.{_FIXED[style]}f}")
-    return 8.0 if style == "time" else len(f"{value:.10g}")

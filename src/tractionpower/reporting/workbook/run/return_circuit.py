@@ -10,7 +10,7 @@ import pandas as pd
 from tractionpower.model.base import parse_time
 from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.texts import mark, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import BY_LIMIT, OPEN, colour_verdicts, verdict_word
+from tractionpower.reporting.workbook.common.acceptance import BY_LIMIT, OPEN, colour_words, verdict_word
 from tractionpower.reporting.workbook.common.verdicts import Comparison, same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
@@ -140,7 +140,7 @@ def _touch(page: Page, rows: Sequence[dict[str, Any]]) -> None:
         ],
     )  # fmt: skip
     if rows:
-        colour_verdicts(block)
+        colour_words(block.sheet, block.cells("verdict"))
 
 
 def _stray(page: Page, facts: Facts, rows: Sequence[dict[str, Any]]) -> None:
@@ -176,7 +176,7 @@ def _stray(page: Page, facts: Facts, rows: Sequence[dict[str, Any]]) -> None:
             for row in rows
         ],
     )  # fmt: skip
-    colour_verdicts(block)
+    colour_words(block.sheet, block.cells("verdict"))
 
 
 def _hours(facts: Facts) -> str:

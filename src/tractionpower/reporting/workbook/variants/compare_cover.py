@@ -85,7 +85,7 @@ def head(facts: Facts) -> Iterator[Said]:
 def folder_name(folder: str) -> str:
     r"""Return the last part of a path, as either system writes it; where it lay is told with the evidence.
 
-    >>> folder_name("/a/b/cmk"), folder_name("D:\\results\\weak grid"), folder_name(".")
+    >>> folder_name("/a/b/cmk"), folder_name("results\\weak grid"), folder_name(".")
     ('cmk', 'weak grid', '.')
     """
     kind = PureWindowsPath if "\\" in folder else PurePath
