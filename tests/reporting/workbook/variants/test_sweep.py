@@ -1,6 +1,7 @@
 """The workbook of a sweep: verdicts, ranks and differences by formulas, against the tables of the study."""
 
 import pytest
+from office import ERRORS, needs_office, recalculated
 from openpyxl import load_workbook
 from read_workbook import read_table, texts
 from small_studies import load, make_scenario
@@ -64,6 +65,33 @@ def test_the_best_case_and_the_limits_are_told_by_formulas(book, path, results):
     assert "INDEX(case_lowest_voltage_v,MATCH(" in verdict
     found = next(row for row in live["Acceptance"].iter_rows(values_only=True) if "lowest voltage" in row)
     assert "=MIN(case_lowest_voltage_v)" in found
+
+
+@needs_office
+def test_emptied_limits_and_texts_in_them_judge_nothing(path, tmp_path):
+    """The tolerance of one limit is edited too: the verdict on a voltage just below it turns."""
+    edited, cells = [], {}
+    for name, value in (("empty", None), ("text", "none")):
+        book = load_workbook(path)
+        cells = {each: next(book.defined_names[each].destinations) for each in book.defined_names if each.startswith("limit_")}
+        for sheet, cell in cells.values():
+            book[sheet][cell] = value
+        book.save(tmp_path / f"{name}.xlsx")
+        edited.append(tmp_path / f"{name}.xlsx")
+    wide = load_workbook(path)
+    lowest = min(row["lowest voltage [V]"] for row in read_table(load_workbook(path, data_only=True)["Variants"]))
+    for name, value in (("limit_u_min2", lowest + 5.0), ("tolerance_u_min2", 5.5)):
+        sheet, cell = next(wide.defined_names[name].destinations)
+        wide[sheet][cell] = value
+    wide.save(tmp_path / "wide.xlsx")
+    books = [load_workbook(copy, data_only=True) for copy in recalculated([*edited, tmp_path / "wide.xlsx"])]
+    assert "limit_u_min2" in cells
+    for book in books[:2]:
+        assert {row["verdict"] for row in read_table(book["Variants"])} == {"not judged"}
+        assert {row["verdict"] for row in read_table(book["Acceptance"]) if row["limit"] == "U_min2"} == {"not judged"}
+        assert not [cell.value for sheet in book for row in sheet.iter_rows() for cell in row if cell.value in ERRORS]
+    assert {row["Lowest voltage"] for row in read_table(books[2]["Verdicts"])} == {"met"}
+    assert {row["verdict"] for row in read_table(books[2]["Acceptance"]) if row["limit"] == "U_min2"} == {"met"}
 
 
 def test_a_grid_of_two_keys_has_a_line_for_each_value(book):

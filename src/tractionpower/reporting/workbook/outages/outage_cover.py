@@ -15,8 +15,8 @@ from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Page
 from tractionpower.reporting.workbook.outages.case_figures import grid_in_words, range_name
 from tractionpower.reporting.workbook.outages.outage_reasons import Reasons, failing, span, spans
-from tractionpower.reporting.workbook.outages.outage_table import BANNER, WORSE_RANGE
-from tractionpower.reporting.workbook.sizing.judging import YES, sentence
+from tractionpower.reporting.workbook.outages.outage_table import BANNER
+from tractionpower.reporting.workbook.sizing.judging import sentence
 from tractionpower.studies.cases.judgement import Check
 
 
@@ -48,26 +48,18 @@ def _verdicts(book: Book, outages: Outages) -> Iterator[tuple[str, Any, str]]:
     outs = [cases for first, cases in groups if first["kind"] != "base"]
     failing = [cases for cases in outs if any(map(outages.failures, cases.values()))]
     if outs:
+        worse = sum(any(map(outages.is_worse, cases.values())) for cases in outs)
         words = tr("{failing} of {all} outages fail", failing=len(failing), all=len(outs))
+        words += tr(", {worse} of them at something that holds with nothing out", worse=worse) if failing else ""
         yield tr("Outages"), Formula(f"{{{BANNER}}}", words) if BANNER in book.names else words, "neutral"
     else:
         yield tr("Outages"), tr("No outage was looked at"), "doubt"
-    if outs:
-        yield "", _worse(sum(any(map(outages.is_worse, cases.values())) for cases in outs)), "neutral"
     reasons = Reasons(book, outages)
     base = [case for first, cases in groups if first["kind"] == "base" for case in cases.values()]
     if base:
         yield tr("Nothing out"), _base(reasons, base), "neutral"
     if len(base) < len(outages.by_id):
         yield from _failing(reasons)
-
-
-def _worse(many: int) -> Formula:
-    """Tell how many outages fail at more than nothing out does, by the sheet of outages."""
-    count = f'COUNTIF({{{WORSE_RANGE}}},"{tr(YES)}")'
-    some = sentence(tr("{worse} of them at something that holds with nothing out."), worse=(count, many))
-    none = sentence(tr("None of them at anything that holds with nothing out."))
-    return Formula(f"IF({count}=0,{none.text},{some.text})", (some if many else none).value)
 
 
 def _base(reasons: Reasons, base: list[Any]) -> Formula:

@@ -82,8 +82,9 @@ class Cases:
         return tr("nothing is changed") if row["kind"] == "base" else self.data.subject(str(row["case"])) or str(row["subject"])
 
     def violated(self, case: str) -> int | None:
-        """Return how many limits a case violates, None for one without figures."""
-        return self.words[case].count(VIOLATED) if case in self.words else None
+        """Return how many limits a case violates, None for one without figures that are judged."""
+        words = self.words.get(case, [])
+        return words.count(VIOLATED) if any(words) else None
 
     def value(self, row: Mapping[Any, Any], name: str) -> float | None:
         """Return a figure of a case as it is shown, None where it has none."""

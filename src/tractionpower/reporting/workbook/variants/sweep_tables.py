@@ -185,7 +185,10 @@ def add_verdicts(book: Book, cases: Cases, cells: Cells) -> None:
 
 
 def _verdict_rows(cases: Cases, cells: Cells) -> Iterator[list[Any]]:
-    count = "+".join(f'({{check{k}}}="{tr(VIOLATED)}")' for k in range(len(cases.checks))) or "0"
+    violated, met = (
+        "+".join(f'({{check{k}}}="{tr(word)}")' for k in range(len(cases.checks))) or "0" for word in (VIOLATED, MET)
+    )
+    count = f'IF({violated}+{met}=0,"",{violated})'
     for number, row in enumerate(cases.rows):
         if row["case"] not in cases.words:
             continue
@@ -195,7 +198,7 @@ def _verdict_rows(cases: Cases, cells: Cells) -> Iterator[list[Any]]:
             if word and cases.is_own(row, k):
                 text, instead = (_judged(check, cells.of(check.figure), tolerance) for tolerance in tolerances_of(check))
                 shown[k] = Formula(text, tr(word), instead)
-        yield [*cases.cells(number), Formula(count, words.count(VIOLATED)), *shown]
+        yield [*cases.cells(number), Formula(count, words.count(VIOLATED) if any(words) else ""), *shown]
 
 
 def _judged(check: Check, found: str, tolerance: str) -> str:
