@@ -140,7 +140,7 @@ def test_tolerances_are_named_cells_that_can_be_edited_and_later_rows_refer_to_t
     assert not second.fill.start_color.rgb.endswith("FFF9C4")
     assert book.workbook.defined_names["tolerance_u_min2"].attr_text == "'Acceptance'!$G$10"
     assert [cached[f"I{row}"] for row in (10, 11, 12)] == ["met"] * 3
-    assert "-1E-06" in sheet["I12"].value
+    assert "-N(1E-06)-" in sheet["I12"].value
 
 
 def test_what_the_program_says_otherwise_than_the_numbers_is_a_word_of_its_own(book):

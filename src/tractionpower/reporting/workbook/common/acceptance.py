@@ -256,7 +256,7 @@ def _margin(row: Accepted) -> Formula | None:
 
 def _comparison(row: Accepted) -> Comparison:
     """Return what the cells of a row are held against."""
-    return Comparison("{found}", "{limit}", row.sense, "{tolerance}" if _is_editable(row) else f"{row.tolerance:g}")
+    return Comparison("{found}", "{limit}", row.sense, "{tolerance}" if _is_editable(row) else f"{row.tolerance:g}".upper())
 
 
 def _verdict(row: Accepted) -> Formula | str:

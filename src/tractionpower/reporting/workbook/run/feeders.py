@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from tractionpower.model.base import parse_time
@@ -25,6 +26,9 @@ STATES = {"closed": mark("closed"), "open": mark("open")}
 
 NEAR_SETTING = 90.0
 """A highest current from this share of the setting on shows amber [%]."""
+
+SAME = 1e-14
+"""Share by which currents may differ that a workbook takes for the same: of several the first is named."""
 
 _COLUMNS = (
     Column("feeder or switch", widest=34, key="name"),
@@ -64,11 +68,12 @@ def add(book: Book) -> None:
         book.define("feeders_heat", page, block.cell("heat", row))
     highest = [number(each[5]) or 0.0 for each in rows]
     most, area = max(highest), block.cells("highest")
+    at = next(k for k, value in enumerate(highest) if math.isclose(value, most, rel_tol=SAME))
     told: list[Told] = [
         (mark("highest current [A]"), Formula(f"MAX({area})", most), "0"),
         (
             mark("where"),
-            Formula(f"INDEX({block.cells('name')},MATCH(MAX({area}),{area},0))", rows[highest.index(most)][0]),
+            Formula(f"INDEX({block.cells('name')},MATCH(MAX({area}),{area},0))", rows[at][0]),
             "any",
         ),
     ]
