@@ -45,9 +45,9 @@ def test_acceptance_finds_its_values_on_this_sheet(rich):
 
 def test_voltages_are_coloured_by_the_limits_that_can_be_edited(rich):
     rules = [rule.formula[0] for area in rich.formulas["Voltages"].conditional_formatting for rule in area.rules]
-    assert any("<limit_u_min2-0.1" in rule for rule in rules)
-    assert any("<limit_u_useful-0.1" in rule for rule in rules)
-    assert any("<3000)" in rule for rule in rules), "the nominal voltage is no limit of the acceptance"
+    for name in ("u_min2", "u_useful"):
+        assert any(f"ISNUMBER(limit_{name})" in rule and f"<limit_{name}-N(tolerance_{name})" in rule for rule in rules)
+    assert not any("3000" in rule for rule in rules), "a voltage below the nominal one is nothing to warn of"
 
 
 def test_the_place_of_another_time_is_left_out(rich, write):

@@ -6,6 +6,7 @@ that is none counts as nothing. Without these tests an empty limit would be 0 V,
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from tractionpower.reporting.texts import tr
@@ -82,7 +83,14 @@ class Comparison:
     def _slack(self) -> str:
         """The lowest margin that is still kept."""
         rounding = f"-{ROUNDING}*ABS({self.limit})"
-        return rounding if self.tolerance in ("", "0") else f"-N({self.tolerance}){rounding}"
+        return f"{_term('-', self.tolerance)}{rounding}"
+
+
+def _term(sign: str, tolerance: str) -> str:
+    """Return a tolerance as a term: that of a cell, which may be empty or a text, or a number."""
+    if tolerance in ("", "0"):
+        return ""
+    return f"{sign}{tolerance.upper()}" if re.fullmatch(r"[\d.]+(e-?\d+)?", tolerance) else f"{sign}N({tolerance})"
 
 
 def beyond(limit: str, tolerance: str, *, is_floor: bool) -> str:
@@ -91,8 +99,7 @@ def beyond(limit: str, tolerance: str, *, is_floor: bool) -> str:
     No number is beyond a limit that is none.
     """
     side, sign, never = ("<", "-", "-1E+99") if is_floor else (">", "+", "1E+99")
-    slack = f"{sign}N({tolerance})" if tolerance else ""
-    return f"{side}IF(ISNUMBER({limit}),{limit}{slack}{sign}{ROUNDING}*ABS({limit}),{never})"
+    return f"{side}IF(ISNUMBER({limit}),{limit}{_term(sign, tolerance)}{sign}{ROUNDING}*ABS({limit}),{never})"
 
 
 def same_as(cell: str) -> str:

@@ -12,6 +12,9 @@ from openpyxl.formatting.rule import FormulaRule
 from tractionpower.reporting.workbook.frame.cells import fill
 from tractionpower.reporting.workbook.frame.formulas import Names
 
+TOLERANCE = "tolerance_"
+"""How the names of tolerances begin: one that was emptied is none, while by any other empty cell nothing is coloured."""
+
 _PLACE = re.compile(r"\{(\w+)\}")
 
 
@@ -43,6 +46,6 @@ class Rule:
         first = self.area.split(":", maxsplit=1)[0]
         found = {name: name if name in names else f"{value:.10g}" for name, value in self.values.items()} | {"cell": first}
         test = _PLACE.sub(lambda match: found[match.group(1)], self.test)
-        limits = "".join(f"ISNUMBER({name})," for name in self.values if name in names)  # one that was emptied colours nothing
+        limits = "".join(f"ISNUMBER({name})," for name in self.values if name in names and not name.startswith(TOLERANCE))
         rule = FormulaRule(formula=[f"AND(ISNUMBER({first}),{limits}{test})"], stopIfTrue=True, fill=fill(self.colour))
         self.sheet.conditional_formatting.add(self.area, rule)

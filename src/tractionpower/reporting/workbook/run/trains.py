@@ -12,6 +12,7 @@ from tractionpower.model.vehicle import Part
 from tractionpower.movement.compile import train_of
 from tractionpower.movement.formation import form
 from tractionpower.reporting.texts import recorded, tr
+from tractionpower.reporting.workbook.common.acceptance import tolerance_name
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL
 from tractionpower.reporting.workbook.frame.facts import STATES, Facts
@@ -20,6 +21,7 @@ from tractionpower.reporting.workbook.frame.page import Column, Page
 from tractionpower.reporting.workbook.frame.rules import Rule
 from tractionpower.reporting.workbook.run.sums import add_sums, number, total
 from tractionpower.reporting.workbook.run.timetable import colour_late
+from tractionpower.results.spells import TOLERANCE_V
 
 NEAR_KM = 0.05
 """A run that begins or ends so near a station is said to be there [km]."""
@@ -135,7 +137,9 @@ def colour_low(book: Book, page: Page, area: str, limit: str) -> None:
     found = book.facts.limit(limit)
     if found is not None:
         name = f"limit_{limit}"
-        book.rules.append(Rule(page.sheet, area, f"{{cell}}<{{{name}}}-0.1", RED_FILL, {name: found.value}))
+        slack = tolerance_name(name)
+        test = f"{{cell}}<{{{name}}}-N({{{slack}}})"
+        book.rules.append(Rule(page.sheet, area, test, RED_FILL, {name: found.value, slack: TOLERANCE_V}))
 
 
 def _journey(facts: Facts, train: dict[str, Any], number_: int) -> list[Any]:
