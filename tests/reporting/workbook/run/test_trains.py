@@ -43,7 +43,7 @@ def test_a_row_says_from_where_to_where_and_what_became_of_it(small):
 def test_low_voltages_are_coloured_by_the_limits_of_the_study(small):
     rules = [rule for area in small["Trains"].conditional_formatting for rule in area.rules]
     tests = {(rule.formula[0].split("<")[-1], rule.dxf.fill.bgColor.rgb[-6:]) for rule in rules if "<" in rule.formula[0]}
-    assert ("limit_u_min2-0.1)", "FFC7CE") in tests
+    assert ("limit_u_min2-N(tolerance_u_min2))", "FFC7CE") in tests
     assert not [colour for _, colour in tests if colour != "FFC7CE"]  # below the nominal voltage is nothing to warn of
 
 
