@@ -130,7 +130,7 @@ def test_verdicts_and_reserves_are_formulas_on_the_tolerance(tmp_path):
     path = write_workbook(judged(results, scenario, LATE), scenario, tmp_path / "report.xlsx")
     live = load_workbook(path)
     first = next(row[0].row for row in live["Feasibility"].iter_rows(max_col=1) if row[0].value == "1001")
-    assert live["Feasibility"].cell(first, 2).value == f'=IF(C{first}>limit_tolerance_s,"infeasible","feasible")'
+    assert live["Feasibility"].cell(first, 2).value == f'=IF(C{first}>N(limit_tolerance_s),"infeasible","feasible")'
     assert live["Feasibility"]["A2"].value.startswith('=IF(feasibility_late_trains>0,"Infeasible: "&feasibility_late_trains&')
     sections = rows_of(live["Sections"])
     assert all(str(row["reserve left [s]"]).startswith("=") for row in sections)

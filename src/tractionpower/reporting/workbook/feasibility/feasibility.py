@@ -111,7 +111,7 @@ def _reserve(told: dict[str, Any]) -> tuple[str, str]:
     if reserve is None:
         words = tr(_NO_RESERVE)
         return words, sentence(words, {})
-    missing = live(_MISSING, {"seconds": f"ROUND(-{{{RESERVE}}},1)", "tolerance": f"{{{LIMIT}}}"})
+    missing = live(_MISSING, {"seconds": f"ROUND(-{{{RESERVE}}},1)", "tolerance": f"N({{{LIMIT}}})"})
     left = live(_RESERVE, {"seconds": f"ROUND({{{RESERVE}}},0)"})
     if reserve < 0.0:
         words = tr(_MISSING, seconds=number(math.floor(-reserve * 10.0 + 0.5) / 10.0), tolerance=number(told["tolerance_s"]))
@@ -142,12 +142,12 @@ def _counts(book: Book, page: Page, row: int, told: tuple[dict[str, Any], Sequen
     lines: list[tuple[str, Any, str, str]] = [
         (tr("trains"), Formula(f"ROWS({verdicts})", len(trains)) if trains else 0, "0", ""),
         (tr("late or not there"), Formula(count, len(late)), "0", COUNT),
-        (tr("tolerance [s]"), Formula(f"{{{LIMIT}}}", float(said["tolerance_s"])), "0.0", ""),
+        (tr("tolerance [s]"), Formula(f"N({{{LIMIT}}})", float(said["tolerance_s"])), "0.0", ""),
     ]
     if reserves:
         least, tolerance = min(reserves), float(said["tolerance_s"])
         lines.append((tr("least reserve left [s]"), Formula("MIN({feasibility_reserves_s})", least), "0.0", RESERVE))
-        with_it = Formula(f"{{{RESERVE}}}+{{{LIMIT}}}", least + tolerance)
+        with_it = Formula(f"{{{RESERVE}}}+N({{{LIMIT}}})", least + tolerance)
         lines.append((tr("least reserve left, tolerance included [s]"), with_it, "0.0", ""))
     for at, (label, value, style, name) in enumerate(lines, row):
         page.put(at, 1, label, "plain")
@@ -162,7 +162,7 @@ def _of_reserve(least: float, tolerance: float, *, is_late: bool) -> Formula:
     """Return what a reserve below zero means for the verdict, as a formula."""
     within, missing = tr("negative: missing, but within the tolerance"), tr("negative: so much is missing")
     shown = "" if least >= 0.0 else missing if is_late or least < -tolerance else within
-    text = f'IF({{{RESERVE}}}>=0,"",IF(OR({{{COUNT}}}>0,{{{RESERVE}}}<-{{{LIMIT}}}),"{missing}","{within}"))'
+    text = f'IF({{{RESERVE}}}>=0,"",IF(OR({{{COUNT}}}>0,{{{RESERVE}}}<-N({{{LIMIT}}})),"{missing}","{within}"))'
     return Formula(text, shown)
 
 
@@ -226,7 +226,7 @@ def _verdict(train: dict[str, Any], tolerance_s: float) -> Formula | str:
     late, word = train["late_s"], train["verdict"]
     if late is None or word != (INFEASIBLE if late > tolerance_s else FEASIBLE):
         return tr(word)
-    return Formula(f'IF({{late}}>{{{LIMIT}}},"{tr(INFEASIBLE)}","{tr(FEASIBLE)}")', tr(word))
+    return Formula(f'IF({{late}}>N({{{LIMIT}}}),"{tr(INFEASIBLE)}","{tr(FEASIBLE)}")', tr(word))
 
 
 def _colour(book: Book, block: Block, tolerance_s: float) -> None:
@@ -244,6 +244,6 @@ def _colour(book: Book, block: Block, tolerance_s: float) -> None:
 def colour_reserve(book: Book, block: Block, heading: str, tolerance_s: float | None = None) -> None:
     """Let a reserve show red when it is missing, by more than the tolerance if one is given, and amber when it is small."""
     area = block.cells(heading)
-    missing, values = ("{cell}<-0.05", {}) if tolerance_s is None else (f"{{cell}}<-{{{LIMIT}}}-0.05", {LIMIT: tolerance_s})
+    missing, values = ("{cell}<-0.05", {}) if tolerance_s is None else (f"{{cell}}<-N({{{LIMIT}}})-0.05", {LIMIT: tolerance_s})
     book.rules.append(Rule(block.sheet, area, missing, RED_FILL, values))
     book.rules.append(Rule(block.sheet, area, f"{{cell}}<{TIGHT_S:g}", AMBER_FILL))
