@@ -43,7 +43,7 @@ FIGURES = (
     "energy_flow", "delays_by_cause", "lost_time", "rail_potential", "rail_potential_time",
     "utilisation", "device_load_duration", "sharing", "demand", "useful_voltage_zones", "curves", TRAIN_FIGURES,
     "envelope_voltage", "envelope_rails", "outage_voltages", "outage_delays", "worst_utilisation", "outages_by_km",
-    "sweep_curves", "sweep_maps", "sweep_differences", "sweep_scatter", "compare_voltage", "compare_substations",
+    "sweep_curves", "sweep_maps", "sweep_differences", "sweep_scatter", "sweep_voltage", "compare_voltage", "compare_substations",
 )  # fmt: skip
 """Names of all figures but those of measurements, which are called by their series, to tell a misspelt one of a template.
 
