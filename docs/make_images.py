@@ -72,7 +72,7 @@ def print_pages(results: tp.Results, scenario: tp.Scenario) -> None:
     document = Document(project="Supply of the Central Trunk Line", revision="A", made_by="A. Designer", checked_by="B. Checker")
     for sheet, name in PAGES.items():
         with tempfile.TemporaryDirectory() as folder:
-            report = Report(company="Example Engineering", document=document, sheets=(sheet,))
+            report = Report(company="Example Engineering", document=document, sheets=None if sheet == "Cover" else (sheet,))
             book = write_workbook(results, scenario, Path(folder) / "book.xlsx", report)
             profile = (Path(folder) / "profile").as_uri()
             convert = [
