@@ -18,7 +18,7 @@ from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.facts.places import LinePlaces
 from tractionpower.reporting.texts import mark, number, recorded, tr
 from tractionpower.results.results import Results
-from tractionpower.studies.cases.judgement import Check, checks_of
+from tractionpower.studies.cases.judgement import SUBJECTS, Check, checks_of
 
 KIND_WORDS = {
     "base": mark("nothing is out"),
@@ -52,17 +52,7 @@ GRID_WORDS = {
 COMPUTED = ("complete", "flagged")
 NOT_COMPUTED = "not computed"
 
-_OF = {
-    "lowest_voltage_v": "",
-    "useful_zone_v": "zone {useful_zone}",
-    "useful_train_v": "train {useful_train}",
-    "useful_zone_time_mean_v": "zone {useful_zone_time_mean}",
-    "useful_train_time_mean_v": "train {useful_train_time_mean}",
-    "utilisation_percent": "{utilisation_device}",
-    "contract_share_percent": "supply point {contract_point}",
-    "breaker_share_percent": "{breaker_device}",
-    "worst_late_s": "train {worst_late_train}",
-}
+_OF = {**SUBJECTS, "lowest_voltage_v": "", "worst_late_s": "train {worst_late_train}"}
 """Of what the figure of a case is, in words."""
 
 _KM = re.compile(r"km (-?[\d.]+)(?:\s*(?:-|–|to)\s*(-?[\d.]+))?")

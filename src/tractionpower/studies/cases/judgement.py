@@ -70,7 +70,7 @@ class Check:
         }  # fmt: skip
 
 
-_OF = {
+SUBJECTS = {
     "lowest_voltage_v": "track {lowest_voltage_track}, km {lowest_voltage_km:.2f}",
     "useful_zone_v": "zone {useful_zone}",
     "useful_train_v": "train {useful_train}",
@@ -80,13 +80,14 @@ _OF = {
     "contract_share_percent": "supply point {contract_point}",
     "breaker_share_percent": "{breaker_device}",
 }
+"""Of what a figure of a case is, with the columns that name it."""
 
 
 def _where(figure: str, row: Row) -> str:
     """Return in words where or of what a figure of a case is."""
     if figure == "worst_late_s":
         return f"train {row['worst_late_train']}" if row["worst_late_train"] else ""
-    return _OF.get(figure, "").format(**row)
+    return SUBJECTS.get(figure, "").format(**row)
 
 
 def checks_of(scenario: Scenario) -> tuple[Check, ...]:
