@@ -16,6 +16,9 @@ REQUIRED: Any = ...
 # The unit is the end of the name; the longest suffix wins. Times of day carry no suffix, their type says how they are written.
 UNITS: dict[str, str] = {
     "ohm_per_km": "Ω/km",
+    "kn_per_mm": "kN/mm",
+    "kns_per_m": "kN s/m",
+    "n_m_per_kn": "N m/kN",
     "n_per_kn_per_kmh2": "N/kN/(km/h)²",
     "n_per_kn_per_kmh": "N/kN/(km/h)",
     "n_per_kn": "N/kN",
@@ -29,6 +32,11 @@ UNITS: dict[str, str] = {
     "permille": "‰",
     "kmh": "km/h",
     "mps2": "m/s²",
+    "mps": "m/s",
+    "bar": "bar",
+    "deg": "°",
+    "cm2": "cm²",
+    "kj": "kJ",
     "kwh": "kWh",
     "ah": "Ah",
     "kn": "kN",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tractionpower.results.column import Column
 from tractionpower.results.column import column as _column
+from tractionpower.results.dynamics_columns import DYNAMICS_TABLES
 from tractionpower.results.measured_columns import MEASURED_TABLES
 from tractionpower.results.sizing_columns import SIZING_TABLES
 
@@ -201,4 +202,5 @@ TABLES: dict[str, tuple[Column, ...]] = {
     ),
     **SIZING_TABLES,
     **MEASURED_TABLES,
+    **DYNAMICS_TABLES,
 }

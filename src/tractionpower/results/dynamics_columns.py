@@ -1,0 +1,66 @@
+"""The tables of train dynamics: vehicles, couplings, controls, statistics."""
+
+from __future__ import annotations
+
+from tractionpower.results.column import Column
+from tractionpower.results.column import column as _column
+
+_TIME = _column("time_s", "Time since the start of the case.", "f8")
+
+DYNAMICS_TABLES: dict[str, tuple[Column, ...]] = {
+    "vehicles": (
+        _TIME,
+        _column("vehicle", "Vehicle: its number from the front and its identifier.", "text"),
+        _column("position_m", "Place of its middle, distance from where the front of the train started.", "f8"),
+        _column("speed_kmh", "Speed."),
+        _column("acceleration_mps2", "Acceleration."),
+        _column("relative_position_m", "Change of its place against the first vehicle since the start.", "f8"),
+        _column("tractive_force_kn", "Tractive effort at the wheel."),
+        _column("electric_brake_force_kn", "Effort of the electric brake."),
+        _column("brake_force_kn", "Effort of the air brake as it acts at the rail."),
+        _column("resistance_kn", "Running resistance with curves and tunnels, as it acts."),
+        _column("grade_force_kn", "Force of the gradient against the direction of travel."),
+        _column("cylinder_pressure_bar", "Pressure of its brake cylinder, gauge."),
+    ),
+    "couplings": (
+        _TIME,
+        _column("coupling", "Coupling: numbers of the vehicles that it joins.", "text"),
+        _column("force_kn", "Force; tension (draft) is positive, compression (buff) negative."),
+        _column("deflection_mm", "How much longer the coupling is than in the middle of its slack."),
+        _column("rate_mps", "Speed at which it lengthens."),
+    ),
+    "controls": (
+        _TIME,
+        _column("drive", "Level of the drive control.", "i4"),
+        _column("brake", "Level of the brake control; one more than the highest is emergency.", "i4"),
+        _column("electric_percent", "Part of the greatest electric brake."),
+        _column("independent_bar", "Pressure commanded by the independent brake."),
+        _column("reduction_bar", "Reduction of the brake pipe at the driver's valve."),
+        _column("traction_kwh", "Work of the tractive effort since the start.", "f8"),
+        _column("brake_kwh", "Work that the air brakes have taken since the start.", "f8"),
+        _column("resistance_kwh", "Work that running, curve and tunnel resistance has taken.", "f8"),
+        _column("coupling_kwh", "Work that the couplings have taken in.", "f8"),
+    ),
+    "coupling_extremes": (
+        _column("coupling", "Coupling: numbers of the vehicles that it joins.", "text"),
+        _column("greatest_tension_kn", "Greatest tension of all steps."),
+        _column("tension_at_s", "When."),
+        _column("greatest_compression_kn", "Greatest compression of all steps."),
+        _column("compression_at_s", "When."),
+        _column("absorbed_kj", "Work that it has taken in."),
+        _column("damage", "Rainflow ranges to the power of 3, over the greatest such sum of all couplings (an index of ours)."),
+    ),
+    "distributions": (
+        _column("of", "drive_speed, brake_speed, coupler_force or acceleration.", "text"),
+        _column("level", "Level of the control; empty where there is none."),
+        _column("lowest", "Lower end of the bin: km/h, kN or m/s2; empty: no end."),
+        _column("highest", "Upper end of the bin; empty: no end."),
+        _column("frequency", "Part of the time.", "f8"),
+    ),
+    "rainflow": (
+        _column("coupling", "Coupling: numbers of the vehicles that it joins.", "text"),
+        _column("range_kn", "Range of the cycle."),
+        _column("mean_kn", "Mean of the cycle."),
+        _column("cycles", "How many: 0.5 for half a cycle.", "f8"),
+    ),
+}

@@ -1,0 +1,1 @@
+"""Pages in the browser over the same calls as the command line: the driving page."""
