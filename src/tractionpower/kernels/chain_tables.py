@@ -173,7 +173,8 @@ MOVER = np.dtype(
         ("a_mps2", "f8"),  # of the last evaluation
         ("direction", "f8"),  # which way resistance finds it moving in this step: +1, -1, 0 held
         ("traction_n", "f8"),
-        ("electric_n", "f8"),
+        ("electric_n", "f8"),  # of the electric brake, before adhesion caps it
+        ("electric_acting_n", "f8"),
         ("cylinder_pa", "f8"),  # at the end of the last step
         ("cylinder_before_pa", "f8"),
         ("independent_pa", "f8"),
@@ -215,7 +216,8 @@ LEDGER = np.dtype(
         ("steps", "i8"),
         ("recorded", "i8"),  # rows written in all
         ("next_record_s", "f8"),
-        ("control_row", "i8"),
+        ("control_row", "i8"),  # the one that holds
+        ("control_rows", "i8"),  # rows of `controls` in use
         ("pipe_rows", "i8"),  # rows of `pipe` in use
         ("traction_j", "f8"),
         ("electric_j", "f8"),
@@ -226,7 +228,7 @@ LEDGER = np.dtype(
         ("step_s", "f8"),  # next step of the variable method
         ("splits", "i8"),  # steps cut where a vehicle came to a stand
         ("rejected", "i8"),
-        ("standing", "?"),
+        ("ended", "?"),
     ],
     align=True,
 )
@@ -253,6 +255,7 @@ class Chain(NamedTuple):
     slopes: NDArray[np.void]  # SLOPE
     bends: NDArray[np.void]  # CURVE
     bend: NDArray[np.void]  # BEND
+    bins: NDArray[np.void]  # HISTOGRAM
 
 
 class ChainState(NamedTuple):
@@ -279,6 +282,52 @@ class ChainState(NamedTuple):
     brake_speed: NDArray[np.float64]
     force: NDArray[np.float64]
     acceleration: NDArray[np.float64]
+
+
+STAGES, POWERS = 7, 5
+"""Most stages of a method; powers that are summed up: traction, electric brake, air brake, resistance, gradient [W]."""
+
+
+class ChainWork(NamedTuple):
+    """Room for the arithmetic of a step; nothing in it outlives the step. n vehicles.
+
+    Attributes
+    ----------
+    applied, friction, force, damper
+        What acts on a vehicle besides friction, the greatest friction, force of the coupling behind it, its damper's part
+        [N], shape (n,).
+    start_s, start_v, stage_s, stage_v
+        Places [m] and speeds [m/s] at the beginning of a step and of its stages, shape (n,).
+    speeds, accelerations
+        Of the stages, shape (STAGES, n) [m/s, m/s2].
+    powers, link_powers
+        Of the stages, shape (STAGES, POWERS) and, taken in by a coupling and by its damper, (STAGES, n, 2) [W].
+    efforts, aims
+        Tractive and electric effort at the beginning of a step, and what they tend to there, shape (n, 2) [N].
+    """
+
+    applied: NDArray[np.float64]
+    friction: NDArray[np.float64]
+    force: NDArray[np.float64]
+    damper: NDArray[np.float64]
+    start_s: NDArray[np.float64]
+    start_v: NDArray[np.float64]
+    stage_s: NDArray[np.float64]
+    stage_v: NDArray[np.float64]
+    speeds: NDArray[np.float64]
+    accelerations: NDArray[np.float64]
+    powers: NDArray[np.float64]
+    link_powers: NDArray[np.float64]
+    efforts: NDArray[np.float64]
+    aims: NDArray[np.float64]
+
+
+def new_chain_work(vehicles: int) -> ChainWork:
+    """Return room for the steps of so many vehicles."""
+    n = vehicles
+    vectors = [np.zeros(n) for _ in range(8)]
+    stages = [np.zeros((STAGES, n)), np.zeros((STAGES, n)), np.zeros((STAGES, POWERS)), np.zeros((STAGES, n, 2))]
+    return ChainWork(*vectors, *stages, np.zeros((n, 2)), np.zeros((n, 2)))
 
 
 VEHICLE_ROW = np.dtype(
@@ -320,7 +369,7 @@ CHAIN_ROW = np.dtype(
 TURN = np.dtype([("link", "i8"), ("force_n", "f8")])
 """A turning point of the force of a coupling."""
 
-TURN_N = 100.0
+TURN_N = 1000.0
 """A force has turned when it has come back by this [N]."""
 
 DONE, BUFFER_FULL, ENDED, NOT_FINITE, STEP_TOO_SMALL = 0, 1, 2, 3, 4

@@ -1,0 +1,61 @@
+"""Controls that a driver sets while the train runs: rows behind those that are there."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tractionpower.dynamics.commands import BAR, brake_target, electric_levels, next_pipe_row, shown_level
+from tractionpower.kernels.chain_tables import ChainState
+from tractionpower.model.dynamics.case import Case
+
+Setting = tuple[int | None, int | str | None, float | None, float | None]
+"""Drive, brake, electric, independent_bar; None leaves one as it is."""
+
+
+def append_control(case: Case, state: ChainState, setting: Setting) -> ChainState:
+    """Return the state with the controls set anew from now on; rows are added in place while there is room.
+
+    Parameters
+    ----------
+    case
+        The case.
+    state
+        State of its chain. Rows of the future, if it has any, are dropped: the driver has taken over.
+    setting
+        What is set.
+    """
+    drive, brake, electric, independent = setting
+    ledger = state.ledger[0]
+    now = float(ledger["time_s"])
+    ledger["control_rows"] = ledger["control_row"] + 1
+    pipe_rows = int(np.searchsorted(state.pipe["from_s"][: ledger["pipe_rows"]], now, side="right"))
+    ledger["pipe_rows"] = max(pipe_rows, 1)
+    state = state._replace(controls=_with_room(state.controls, ledger["control_rows"]), pipe=_with_room(state.pipe, pipe_rows))
+    row = state.controls[ledger["control_rows"]]
+    row[()] = state.controls[ledger["control_row"]]
+    row["at_s"] = now
+    state.controls["at_s"][ledger["control_rows"] + 1 :] = np.inf  # rows that are not in use never come
+    if drive is not None:
+        row["drive"] = drive
+    if electric is not None:
+        row["electric"] = min(electric / electric_levels(case), 1.0)
+    if independent is not None:
+        row["independent_pa"] = independent * BAR
+    if brake is not None:
+        target, emergency = brake_target(case.air_brake, brake)
+        before = state.pipe[ledger["pipe_rows"] - 1]
+        state.pipe[ledger["pipe_rows"]] = next_pipe_row(case.air_brake, before, now, target, emergency)
+        ledger["pipe_rows"] += 1
+        row["brake"] = shown_level(case.air_brake, target, emergency=emergency)
+    ledger["control_rows"] += 1
+    return state
+
+
+def _with_room(rows: NDArray[np.void], used: int) -> NDArray[np.void]:
+    """Return rows with room for one more behind those in use."""
+    if used < len(rows):
+        return rows
+    more = np.zeros(max(2 * len(rows), 64), rows.dtype)
+    more[: len(rows)] = rows
+    return more
