@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from tractionpower.model.base import Declaration, Format, Identifier, Real, Text
+from tractionpower.model.base import Count, Declaration, Format, Identifier, Real, Text
 from tractionpower.model.quantity import field
 
 
@@ -62,6 +62,9 @@ class Gear(Declaration):
     stroke_mm: Real | None = field("stroke_mm", "Deflection at which it is solid; left out: never.", above=0, default=None)
     solid_stiffness_kn_per_mm: Real | None = field(
         "solid_stiffness_kn_per_mm", "Stiffness beyond the stroke; left out: the locked one.", above=0, default=None
+    )
+    in_series: Count = Field(
+        default=1, ge=1, le=4, description="Equal gears one behind the other: all figures are of one, deflections add up."
     )
 
 
