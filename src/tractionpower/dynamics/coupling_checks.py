@@ -106,7 +106,7 @@ def _check_wedge(path: str, gear: Gear, wedge: Wedge) -> Iterator[Problem]:
     tan = math.tan(math.radians(wedge.angle_deg))
     for name, mu in (("static_friction", wedge.static_friction), ("kinetic_friction", wedge.kinetic_friction)):
         if mu >= tan:
-            found = f"{mu:g} is not below tan({wedge.angle_deg:g} deg) = {tan:.4f}: the wedge locks, F = F_s tan / (tan - mu) is infinite"
+            found = f"{mu:g} is not below tan({wedge.angle_deg:g} deg) = {tan:.4f}: the wedge locks, tan / (tan - mu) has no end"
             yield Problem("locked_wedge", f"{path}.wedge.{name}", found, f"below {tan:.4f}", "correct the friction or angle_deg")
     slow, fast = wedge.static_friction, wedge.kinetic_friction
     if fast > slow:
