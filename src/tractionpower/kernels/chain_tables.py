@@ -47,8 +47,8 @@ ENGINE = np.dtype(
 )
 """What drives a vehicle, and its electric brake."""
 
-LEVEL = np.dtype([("effort_n", "f8"), ("power_w", "f8"), ("first_point", "i8"), ("points", "i8")])
-"""Steady effort of one level: min(effort, power / v), or points (v, F) where it has some."""
+LEVEL = np.dtype([("effort_n", "f8"), ("power_w", "f8"), ("first_point", "i8"), ("points", "i8"), ("pull_out_w_mps", "f8")])
+"""Steady effort of one level: min(effort, power / v, pull-out / v2; 0: none), or points (v, F) where it has some."""
 
 BRAKE = np.dtype(
     [
@@ -85,6 +85,7 @@ AIR = np.dtype(
         ("release_s", "f8"),
         ("independent_s", "f8"),
         ("pipe_pa", "f8"),
+        ("emergency_fill_s", "f8"),  # instead of fill_s where the row of the pipe is one of emergency
     ]
 )
 """What all cylinders have in common; one row."""

@@ -124,8 +124,9 @@ class AirBrake(Declaration):
         default=None, description="Reduction at each level from 1 on, instead of the linear ones."
     )
     emergency_time_constant_s: Real = field(
-        "emergency_time_constant_s", "Time constant of the pipe in emergency, when it is emptied.", at_least=0, default=0.5
-    )
+        "emergency_time_constant_s", "Time constant of the pipe in emergency, when it is emptied.", at_least=0, default=0.5,
+        source="assumed",
+    )  # fmt: skip
     application_time_constant_s: Real = field(
         "application_time_constant_s", "Time constant of the reduction on application.", at_least=0, default=4.0 / 3.0,
         source="95 % after 4 s, P: t95 / 3",
@@ -149,6 +150,12 @@ class AirBrake(Declaration):
     cylinder_fill_s: Real = field(
         "cylinder_fill_s", "Time constant of a filling cylinder behind its valve.", at_least=0, default=0.0
     )
+    cylinder_emergency_fill_s: Real | None = field(
+        "cylinder_emergency_fill_s",
+        "Time constant of a filling cylinder in emergency; left out: the greater of cylinder_fill_s and"
+        " application_time_constant_s, as no cylinder fills faster than in full service because the pipe empties faster.",
+        at_least=0, default=None,
+    )  # fmt: skip
     cylinder_release_s: Real = field("cylinder_release_s", "Time constant of an emptying cylinder.", at_least=0, default=0.0)
     independent_time_constant_s: Real = field(
         "independent_time_constant_s", "Time constant of the independent brake of powered vehicles.", at_least=0, default=1.0
