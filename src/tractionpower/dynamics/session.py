@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,9 @@ from tractionpower.kernels.chain_tables import (
     ChainState,
     new_chain_work,
 )
+from tractionpower.kernels.chain_tally import present_reduction, set_present
 from tractionpower.model.dynamics.case import DynamicsScenario
+from tractionpower.results.dynamics_snapshot import distributions, snapshot
 
 ROWS = 1024
 """Rows that a block may record before they are taken away."""
@@ -126,6 +128,18 @@ class Session:
             Cylinder pressure of the independent brake [bar].
         """
         self.state = append_control(self.compiled.scenario.case, self.state, (drive, brake, electric, independent_bar))
+
+    def snapshot(self) -> dict[str, Any]:
+        """Return what is the case now, in units of the boundary: time, controls, motion of the first vehicle, forces."""
+        chain = self.compiled.chain
+        set_present(chain, self.state, self._work)
+        reduction = present_reduction(chain, self.state)
+        forces = self._work.force[: len(self.state.links)].copy()
+        return snapshot(self.state, forces, reduction, float(chain.air[0]["pipe_pa"]), chain.vehicles["weight_n"])
+
+    def distributions(self) -> dict[str, Any]:
+        """Return the distributions of levels, speed, force of the first coupling and acceleration up to now."""
+        return distributions(self.state, self.compiled.chain.bins)
 
     def copy(self) -> ChainState:
         """Return a copy of the state, to be put back by `restore`."""

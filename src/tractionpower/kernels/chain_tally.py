@@ -109,3 +109,9 @@ def set_present(chain, state, work):
             mover.brake_n *= part
             mover.electric_acting_n *= part
         mover.a_mps2 = (applied - friction) / chain.vehicles[i].inertia_kg
+
+
+@njit
+def present_reduction(chain, state):
+    """Return the reduction of the pipe at the driver's valve now [Pa]."""
+    return reduction_at(chain, state, state.ledger[0].time_s)
