@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from tractionpower.model.dynamics.case import CasePart, DynamicsScenario
 
 
-
 def masses(scenario: DynamicsScenario) -> NDArray[np.float64]:
     """Return the masses of the vehicles from the front [kg]."""
     return np.array([_mass_and_inertia(scenario, part)[0] for part in scenario.parts])

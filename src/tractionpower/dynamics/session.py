@@ -7,8 +7,8 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.dynamics.controls import append_control
 from tractionpower.dynamics.compile import CompiledChain, compile_chain
+from tractionpower.dynamics.controls import append_control
 from tractionpower.errors import TractionPowerError
 from tractionpower.kernels.chain import advance_chain
 from tractionpower.kernels.chain_tables import (
@@ -35,7 +35,7 @@ TURNS = 65_536
 """Turning points of coupling forces that a block may note, at least; a step may note one for each coupling."""
 
 
-class NotComputable(TractionPowerError):
+class NotComputableError(TractionPowerError):
     """The motion cannot be computed on: a state is no number any more, or a variable step has become too small."""
 
 
@@ -87,7 +87,7 @@ class Session:
 
         Raises
         ------
-        NotComputable
+        NotComputableError
             If it cannot be computed on; what was recorded up to there can be taken.
         """
         while True:
@@ -97,7 +97,7 @@ class Session:
             self._keep()
         if reason in (NOT_FINITE, STEP_TOO_SMALL):
             what = "a speed is no number any more" if reason == NOT_FINITE else "the variable step has become shorter than 1 ns"
-            raise NotComputable(f"at {self.time_s:.3f} s {what}; shorten step_s, or soften the stiffest coupling")
+            raise NotComputableError(f"at {self.time_s:.3f} s {what}; shorten step_s, or soften the stiffest coupling")
         return "ended" if reason == ENDED else "done"
 
     def take_rows(self) -> Rows:
@@ -151,11 +151,8 @@ class Session:
 
     def _keep(self) -> None:
         buffers, (rows, turns) = self._buffers, self._buffers.used
-        self._kept.append(
-            Rows(
-                buffers.chain[:rows].copy(), buffers.vehicles[:rows].copy(), buffers.links[:rows].copy(), buffers.turns[:turns].copy()
-            )
-        )
+        taken = buffers.chain[:rows], buffers.vehicles[:rows], buffers.links[:rows], buffers.turns[:turns]
+        self._kept.append(Rows(*(part.copy() for part in taken)))
         buffers.used[:] = 0
 
 

@@ -113,13 +113,20 @@ def _rk4(modes: Modes, h: float) -> Floats:
 
 
 def _leapfrog(modes: Modes, h: float) -> Floats:
-    """Return the spectral radius of (s, v) -> (s + h (v + v')/2, v'), v' = v - h (w2 (s + h v/2) + d v), for each mode."""
+    """Return the spectral radius of a leapfrog step for each mode.
+
+    State (s, v, a): v' = v - h (w2 (s + h v/2) + d (v + h a/2)), a' = (v' - v)/h, s' = s + h (v + v')/2.
+    """
     w2, d = modes.frequency**2, modes.damping
-    vs, vv = -h * w2, 1.0 - h * d - 0.5 * h * h * w2
-    ss, sv = 1.0 + 0.5 * h * vs, 0.5 * h * (1.0 + vv)
-    trace, determinant = ss + vv, ss * vv - sv * vs
-    root = np.sqrt((0.25 * trace**2 - determinant).astype(complex))
-    return np.maximum(np.abs(0.5 * trace + root), np.abs(0.5 * trace - root))
+    step = np.zeros((len(w2), 3, 3))
+    gain = step[:, 2]
+    gain[:, 0], gain[:, 1], gain[:, 2] = -w2, -0.5 * h * w2 - d, -0.5 * h * d
+    step[:, 1] = h * gain
+    step[:, 1, 1] += 1.0
+    step[:, 0] = 0.5 * h * step[:, 1]
+    step[:, 0, 0] += 1.0
+    step[:, 0, 1] += 0.5 * h
+    return np.asarray(np.abs(np.linalg.eigvals(step)).max(axis=1))
 
 
 _GROWTH: dict[str, Callable[[Modes, float], Floats]] = {"euler": _euler, "rk4": _rk4, "symplectic": _leapfrog}

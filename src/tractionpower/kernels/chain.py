@@ -76,9 +76,7 @@ def advance_chain(chain, state, buffers, work, until_s):
 def _take_controls(state):
     """Let the last row of the controls whose time has come hold."""
     ledger = state.ledger[0]
-    while (
-        ledger.control_row + 1 < ledger.control_rows and state.controls[ledger.control_row + 1].at_s <= ledger.time_s + TINY_S
-    ):
+    while ledger.control_row + 1 < ledger.control_rows and state.controls[ledger.control_row + 1].at_s <= ledger.time_s + TINY_S:
         ledger.control_row += 1
 
 

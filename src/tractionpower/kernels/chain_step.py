@@ -50,24 +50,26 @@ _NO_E = np.zeros(7)
 def leap(chain, state, control, h, work):
     """Move the chain by a leapfrog step of `h` [s]: half a step on, new speeds by the forces there, half a step on.
 
-    Places move by the mean of the old and the new speed, so that force times way is exactly the change of kinetic energy.
+    Places move by the mean of the old and the new speed, so that force times way is exactly the change of kinetic energy. What
+    depends on speed takes the one that the last step lets expect in the middle, which keeps the second order.
     """
     movers, ledger = state.movers, state.ledger[0]
     n = movers.shape[0]
     for i in range(n):
         mover = movers[i]
-        work.start_v[i] = mover.v_mps
+        work.middle_v[i] = mover.v_mps + 0.5 * h * mover.gain_mps2
         work.stage_s[i] = mover.s_m + 0.5 * h * mover.v_mps
     begin_efforts(chain, state, control, work)
-    set_efforts(chain, state, control, work.start_v, 0.5 * h, work)
-    set_applied(chain, state, work.stage_s, work.start_v, work)
+    set_efforts(chain, state, control, work.middle_v, 0.5 * h, work)
+    set_applied(chain, state, work.stage_s, work.middle_v, work)
     for i in range(n):
         mover = movers[i]
         inertia = chain.vehicles[i].inertia_kg
-        greatest = set_resisting(chain, i, mover, work.stage_s[i], work.start_v[i], 0.5)
+        greatest = set_resisting(chain, i, mover, work.stage_s[i], work.middle_v[i], 0.5)
         free, drop = mover.v_mps + h * work.applied[i] / inertia, h * greatest / inertia
         after = free - drop if free > drop else (free + drop if free < -drop else 0.0)
         way = 0.5 * h * (mover.v_mps + after)
+        mover.gain_mps2 = (after - mover.v_mps) / h if after != 0.0 else 0.0
         _count_works(ledger, chain, i, mover, greatest, (free - after) * inertia / h, way)
         work.stage_v[i] = way
         mover.v_mps = after
@@ -75,7 +77,7 @@ def leap(chain, state, control, h, work):
     for j in range(n - 1):
         link = state.links[j]
         stretch = stretch_of(chain, j, work.stage_s[j], work.stage_s[j + 1])
-        commit_coupling(chain, link, chain.couplings[j], stretch, work.start_v[j] - work.start_v[j + 1])
+        commit_coupling(chain, link, chain.couplings[j], stretch, work.middle_v[j] - work.middle_v[j + 1])
         longer = work.stage_v[j] - work.stage_v[j + 1]
         link.absorbed_j += work.force[j] * longer
         link.damper_j += work.damper[j] * longer

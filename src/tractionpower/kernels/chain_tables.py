@@ -172,6 +172,7 @@ MOVER = np.dtype(
         ("s_m", "f8"),  # place of its middle
         ("v_mps", "f8"),
         ("a_mps2", "f8"),  # of the last evaluation
+        ("gain_mps2", "f8"),  # mean acceleration of the last leapfrog step
         ("direction", "f8"),  # which way resistance finds it moving in this step: +1, -1, 0 held
         ("traction_n", "f8"),
         ("electric_n", "f8"),  # of the electric brake, before adhesion caps it
@@ -297,8 +298,8 @@ class ChainWork(NamedTuple):
     applied, friction, force, damper
         What acts on a vehicle besides friction, the greatest friction, force of the coupling behind it, its damper's part
         [N], shape (n,).
-    start_s, start_v, stage_s, stage_v
-        Places [m] and speeds [m/s] at the beginning of a step and of its stages, shape (n,).
+    middle_v, stage_s, stage_v
+        Speeds expected in the middle of a step [m/s], places [m] and speeds of a stage, shape (n,).
     speeds, accelerations
         Of the stages, shape (STAGES, n) [m/s, m/s2].
     powers, link_powers
@@ -311,8 +312,7 @@ class ChainWork(NamedTuple):
     friction: NDArray[np.float64]
     force: NDArray[np.float64]
     damper: NDArray[np.float64]
-    start_s: NDArray[np.float64]
-    start_v: NDArray[np.float64]
+    middle_v: NDArray[np.float64]
     stage_s: NDArray[np.float64]
     stage_v: NDArray[np.float64]
     speeds: NDArray[np.float64]
@@ -326,7 +326,7 @@ class ChainWork(NamedTuple):
 def new_chain_work(vehicles: int) -> ChainWork:
     """Return room for the steps of so many vehicles."""
     n = vehicles
-    vectors = [np.zeros(n) for _ in range(8)]
+    vectors = [np.zeros(n) for _ in range(7)]
     stages = [np.zeros((STAGES, n)), np.zeros((STAGES, n)), np.zeros((STAGES, POWERS)), np.zeros((STAGES, n, 2))]
     return ChainWork(*vectors, *stages, np.zeros((n, 2)), np.zeros((n, 2)))
 
