@@ -143,17 +143,22 @@ class Session:
 
     def copy(self) -> ChainState:
         """Return a copy of the state, to be put back by `restore`."""
-        return ChainState(*(array.copy() for array in self.state))
+        return copied(self.state)
 
     def restore(self, state: ChainState) -> None:
         """Go back to a copied state; what was recorded since stays recorded."""
-        self.state = ChainState(*(array.copy() for array in state))
+        self.state = copied(state)
 
     def _keep(self) -> None:
         buffers, (rows, turns) = self._buffers, self._buffers.used
         taken = buffers.chain[:rows], buffers.vehicles[:rows], buffers.links[:rows], buffers.turns[:turns]
         self._kept.append(Rows(*(part.copy() for part in taken)))
         buffers.used[:] = 0
+
+
+def copied(state: ChainState) -> ChainState:
+    """Return a copy of a state."""
+    return state._replace(**{name: array.copy() for name, array in state._asdict().items()})
 
 
 def _new_buffers(vehicles: int) -> ChainBuffers:
