@@ -35,7 +35,7 @@ def test_the_ledger_of_works_closes(gear, method, step_s):
     gap, whole = chained.ledger_gap(before)
     assert abs(gap) <= 1e-6 * whole
     ledger = chained.ledger
-    assert min(ledger[name] for name in ("traction_j", "brake_j", "resistance_j", "coupling_j")) > 1e4
+    assert min(ledger[name] for name in ("traction_j", "brake_j", "resistance_j", "coupling_j")) > 1e3
     assert float(chained.links["absorbed_j"].sum()) == pytest.approx(float(ledger["coupling_j"]), rel=1e-9)
 
 
@@ -81,55 +81,70 @@ POWER = 1.5e6
 SMOOTH_S = 4.0
 
 
-def smooth(**run):
+def smooth(lag_s=0.0, **run):
     wagon = WAGON | {"resistance": {"a_n": 2000.0, "b_n_per_kmh": 100.0, "c_n_per_kmh2": 5.0}}
-    traction = {"levels": 1, "time_constant_s": 0.3, "starting_effort_kn": 5000.0, "power_kw": POWER / 1000.0}
+    traction = {"levels": 1, "time_constant_s": lag_s, "starting_effort_kn": 5000.0, "power_kw": POWER / 1000.0}
     return pulled(
         N - 1, spring(5.0, damping_kns_per_m=60.0), vehicles=(LOCOMOTIVE, wagon), traction=traction,
         start={"speed_kmh": 36.0}, run=run,
     )  # fmt: skip
 
 
-def smooth_reference():
-    """Return places against the start, and speeds, by scipy and equations of our own."""
+def smooth_reference(lag_s=0.0):
+    """Return places against the start, and speeds, by scipy and equations of our own; the effort lags if `lag_s` is given."""
 
     def slope(_, y):
         x, v, effort = y[:N], y[N : 2 * N], y[2 * N]
         force = K * (x[:-1] - x[1:]) + D * (v[:-1] - v[1:])
         kmh = 3.6 * v[1:]
         a = np.zeros(N)
-        a[0] = effort - force[0]
+        steady = POWER / v[0]
+        a[0] = (effort if lag_s else steady) - force[0]
         a[1:] = force - np.append(force[1:], 0.0) - (2000.0 + 100.0 * kmh + 5.0 * kmh**2)
-        return np.concatenate([v, a / M, [(POWER / v[0] - effort) / 0.3]])
+        return np.concatenate([v, a / M, [(steady - effort) / lag_s if lag_s else 0.0]])
 
     start = np.concatenate([np.zeros(N), np.full(N, 10.0), [0.0]])
     found = solve_ivp(slope, (0.0, SMOOTH_S), start, method="DOP853", rtol=1e-12, atol=1e-12)
     return found.y[: 2 * N, -1]
 
 
-def smooth_error(reference, **run):
-    chained = Chained(smooth(**run))
-    start = chained.movers["s_m"].copy()
-    chained.advance(SMOOTH_S)
-    assert float(chained.ledger["time_s"]) == pytest.approx(SMOOTH_S, abs=1e-9)
-    found = np.concatenate([chained.movers["s_m"] - start, chained.movers["v_mps"]])
-    return np.abs(found - reference).max()
+def smooth_errors(runs, lag_s=0.0):
+    """Return the greatest error of places [m] and speeds [m/s] of each run."""
+    reference = smooth_reference(lag_s)
+    errors = []
+    for run in runs:
+        chained = Chained(smooth(lag_s, **{"record_every_s": SMOOTH_S} | run))
+        start = chained.movers["s_m"].copy()
+        chained.advance(SMOOTH_S)
+        assert float(chained.ledger["time_s"]) == pytest.approx(SMOOTH_S, abs=1e-9)
+        found = np.concatenate([chained.movers["s_m"] - start, chained.movers["v_mps"]])
+        errors.append(np.abs(found - reference).max())
+    return np.array(errors)
 
 
-@pytest.mark.parametrize(("method", "steps", "order"), [("euler", (0.002, 0.001, 0.0005), 1), ("symplectic", (0.02, 0.01, 0.005), 1), ("rk4", (0.08, 0.04, 0.02), 4)])
-def test_halving_the_step_shrinks_the_error_by_the_order(method, steps, order):
-    reference = smooth_reference()
-    errors = [smooth_error(reference, method=method, step_s=step) for step in steps]
-    found = np.log2(np.array(errors[:-1]) / errors[1:])
+@pytest.mark.parametrize(
+    ("method", "lag_s", "steps", "order"),
+    [
+        ("euler", 0.0, (0.002, 0.001, 0.0005), 1),
+        ("euler", 0.3, (0.002, 0.001, 0.0005), 1),
+        ("symplectic", 0.0, (0.02, 0.01, 0.005), 1),
+        ("symplectic", 0.3, (0.02, 0.01, 0.005), 1),
+        ("rk4", 0.0, (0.08, 0.04, 0.02), 4),
+        ("rk4", 0.3, (0.08, 0.04, 0.02), 2),  # the lag is exact for an aim that is linear in time
+    ],
+)
+def test_halving_the_step_shrinks_the_error_by_the_order(method, lag_s, steps, order):
+    errors = smooth_errors([{"method": method, "step_s": step} for step in steps], lag_s)
+    found = np.log2(errors[:-1] / errors[1:])
     assert found.min() > order - 0.25, errors
-    if method != "symplectic":  # the leapfrog is of second order where speeds matter little
+    if method == "euler" or lag_s == 0.0 and method == "rk4":  # the others do better where speeds matter little
         assert found.max() < order + 0.6, errors
 
 
 def test_a_smaller_tolerance_gives_a_smaller_error():
-    reference = smooth_reference()
-    errors = [smooth_error(reference, method="variable", step_s=0.5, tolerance=tolerance) for tolerance in (1e-4, 1e-6, 1e-8)]
-    assert errors[0] > 5.0 * errors[1] > 25.0 * errors[2]
+    runs = [{"method": "variable", "step_s": 0.5, "tolerance": tolerance} for tolerance in (1e-4, 1e-6, 1e-8)]
+    errors = smooth_errors(runs)
+    assert errors[0] > 10.0 * errors[1] > 100.0 * errors[2]
     assert errors[2] < 1e-6
 
 
