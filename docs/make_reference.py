@@ -27,6 +27,8 @@ from tractionpower.io.rating_files import DUTY_CLASSES, RECTIFIER_UNITS
 from tractionpower.io.templates import write_template
 from tractionpower.kernels.train_tables import LIMITED_BY, PHASES
 from tractionpower.model.conductors import Conductor
+from tractionpower.model.dynamics.case import Case
+from tractionpower.model.dynamics.coupling import Coupling
 from tractionpower.model.limits import Limit, common_limits
 from tractionpower.model.line import Line
 from tractionpower.model.measured import MeasuredMap
@@ -56,13 +58,15 @@ FILES = {
     "rectifier_units (CSV)": RectifierUnit,
     "map of a measurement (YAML)": MeasuredMap,
     "report.yaml (template of reports)": Report,
+    "case.yaml (train dynamics)": Case,
+    "rollingstock/couplings/ID.yaml": Coupling,
 }
 INPUTS = """Units stand in the names. A list may be the name of a CSV file instead, relative to the file that names it; its
 header row names the keys, those of a nested mapping with dots (`start.time`). A column that is a list of rows itself, such as
 `calls`, holds names of further CSV files.
 
-Trains and vehicles are looked for by their id in `rollingstock` of the study's folder, then of the working folder, then among
-what ships. A character of an id that a file name cannot hold is written as `%` and two hexadecimal digits (`a%2Fb.yaml` for
+Trains, vehicles and couplings are looked for by their id in `rollingstock` of the folder of the study or case, then of the
+working folder, then among what ships. A character of an id that a file name cannot hold is written as `%` and two hexadecimal digits (`a%2Fb.yaml` for
 a/b).
 """
 CONDUCTORS = ("<!-- conductors that ship: made by `make docs`; do not edit -->\n", "<!-- end of the conductors that ship -->\n")

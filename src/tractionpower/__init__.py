@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from tractionpower.cosimulation.check import check_scenario as check
     from tractionpower.cosimulation.simulate import simulate
     from tractionpower.errors import InputError, OutputError, Problem, TractionPowerError, UsageError
+    from tractionpower.io.dynamics_files import load_case
     from tractionpower.io.library import change
     from tractionpower.io.scenario_files import load
     from tractionpower.io.scenario_files import save_scenario as save
@@ -42,6 +43,7 @@ _HOMES = {
     "feasibility": ("studies.feasibility.study", "feasibility"),
     "journeys": ("studies.journeys", "journeys"),
     "load": ("io.scenario_files", "load"),
+    "load_case": ("io.dynamics_files", "load_case"),
     "save": ("io.scenario_files", "save_scenario"),
     "select": ("results.selection.select", "select"),
     "simulate": ("cosimulation.simulate", "simulate"),
@@ -65,6 +67,7 @@ __all__ = [
     "feasibility",
     "journeys",
     "load",
+    "load_case",
     "save",
     "select",
     "simulate",

@@ -1,4 +1,4 @@
-"""Reading of the trains and vehicles that a study or a command names, each once, with all their problems."""
+"""Reading of the trains, vehicles and couplings that a study, a case or a command names, each once, with all their problems."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ from tractionpower.io.stock_finder import (
 from tractionpower.io.text_files import Source, relative_label
 from tractionpower.io.wording import shorten, shown
 from tractionpower.model.base import Identifier
+from tractionpower.model.dynamics.coupling import Coupling
 from tractionpower.model.vehicle import Part, Train, Vehicle
 
 __all__ = ["RollingStock", "find_rolling_stock", "load_train", "load_vehicle", "shipped_trains", "shipped_vehicles"]
@@ -84,7 +85,7 @@ def load_train(train: str | Path) -> tuple[Train, tuple[Vehicle, ...]]:
 
 
 class RollingStock:
-    """The trains and vehicles that are named by somebody, each read once.
+    """The trains, vehicles and couplings that are named by somebody, each read once.
 
     Parameters
     ----------
@@ -98,6 +99,7 @@ class RollingStock:
         self._reader, self._folder = reader, study_folder
         self.trains: _Shelf[Train] = _Shelf("trains", Train, reader)
         self.vehicles: _Shelf[Vehicle] = _Shelf("vehicles", Vehicle, reader)
+        self.couplings: _Shelf[Coupling] = _Shelf("couplings", Coupling, reader)
 
     def has(self, kind: StockKind, identifier: str) -> bool:
         """Return whether a file of that id exists."""
@@ -114,6 +116,17 @@ class RollingStock:
                 if train is not None:
                     self.add_train(train, content, (key, index, "train"))
                 self._add_parts(run, content, (key, index))
+
+    def add_case(self, content: Input) -> None:
+        """Read the vehicles and couplings that a case of train dynamics names."""
+        self._add_parts(content.data, content, ())
+        parts = content.data.get("vehicles")
+        owners: list[tuple[Loc, Any]] = [((), content.data)]
+        owners += [(("vehicles", index), part) for index, part in enumerate(parts if isinstance(parts, list) else ())]
+        for loc, owner in owners:
+            coupling = _identifier(owner.get("coupling")) if isinstance(owner, dict) else None
+            if coupling is not None:
+                self._add(self.couplings, coupling, content, (*loc, "coupling"))
 
     def add_train(self, identifier: str, namer: Input | None = None, loc: Loc = ()) -> None:
         """Read a train, which the file `namer` names at `loc`, and its vehicles."""
@@ -167,7 +180,7 @@ class RollingStock:
         return shelf.read(file, f"{shelf.kind}[{shorten(identifier)}]", place, identifier)
 
 
-Item = TypeVar("Item", Train, Vehicle)
+Item = TypeVar("Item", Train, Vehicle, Coupling)
 
 
 @dataclass(slots=True)

@@ -9,6 +9,8 @@ from pydantic import BaseModel
 from tractionpower.errors import UsageError
 from tractionpower.io.wording import did_you_mean, shown
 from tractionpower.model.conductors import Conductor
+from tractionpower.model.dynamics.case import Case
+from tractionpower.model.dynamics.coupling import Coupling
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.measured import MeasuredMap
@@ -32,6 +34,8 @@ _MODELS: dict[str, type[BaseModel]] = {
     "rectifier_units": RectifierUnit,
     "measured": MeasuredMap,
     "report": Report,
+    "case": Case,
+    "coupling": Coupling,
 }
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"

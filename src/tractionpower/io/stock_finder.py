@@ -1,6 +1,6 @@
-"""Where the files of trains and vehicles are.
+"""Where the files of trains, vehicles and couplings are.
 
-The file of an identifier lies in ``rollingstock/trains`` or ``rollingstock/vehicles`` of the study's folder, of the
+The file of an identifier lies in ``rollingstock/trains``, ``vehicles`` or ``couplings`` of the study's folder, of the
 working folder, or of the data that ship; the first that exists wins. An identifier is the name of its file
 (`tractionpower.io.file_names`), capitals and small letters kept apart on every system.
 """
@@ -16,7 +16,7 @@ from tractionpower.io.file_names import ENDING, identifier_of, looks_like, stand
 from tractionpower.io.finder import data_folder
 from tractionpower.io.wording import did_you_mean, printable, shorten, shown
 
-StockKind = Literal["trains", "vehicles"]
+StockKind = Literal["trains", "vehicles", "couplings"]
 
 FOLDER: Literal["rollingstock"] = "rollingstock"
 
@@ -25,12 +25,12 @@ _MOST_LISTED = 12
 
 
 def find_rolling_stock(kind: StockKind, identifier: str, study_folder: Path | None) -> Path | None:
-    """Return the file of a train or vehicle, or None if there is none.
+    """Return the file of a train, vehicle or coupling, or None if there is none.
 
     Parameters
     ----------
     kind
-        Which of the two.
+        Which of them.
     identifier
         Its id, which is the name of the file.
     study_folder
@@ -56,7 +56,7 @@ def find_rolling_stock(kind: StockKind, identifier: str, study_folder: Path | No
 
 
 def known_rolling_stock(kind: StockKind, study_folder: Path | None) -> list[str]:
-    """Return the ids of all trains or vehicles that can be named, sorted."""
+    """Return the ids of all trains, vehicles or couplings that can be named, sorted."""
     return sorted({identifier_of(name) for folder in _folders(kind, study_folder) for name in _names(folder)})
 
 

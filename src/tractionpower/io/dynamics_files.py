@@ -1,0 +1,120 @@
+"""Cases of train dynamics: a case file, or a configuration of Arshad et al., to what is computed; all problems at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from tractionpower.errors import InputError, Problem
+from tractionpower.io.arshad.reading import read_arshad
+from tractionpower.io.case_finder import FoundCase, find_case, shipped_cases
+from tractionpower.io.documents import Reader
+from tractionpower.io.problems import Input, in_file_order
+from tractionpower.io.provenance import Mark, Provenance
+from tractionpower.io.rolling_stock import RollingStock
+from tractionpower.io.text_files import Source
+from tractionpower.io.wording import did_you_mean, shown
+from tractionpower.model.base import Declaration
+from tractionpower.model.dynamics.case import Case, DynamicsScenario
+
+__all__ = ["LoadedCase", "find_case", "load_case", "read_case", "shipped_cases"]
+
+KINDS: dict[str, type[Declaration]] = {"vehicles": Case}
+"""What a case file declares, by its ``kind``. One that is no train as many vehicles stands for itself."""
+
+ROOT = "case"
+"""Model path of the content of a case file."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedCase:
+    """A case with the memory of where it came from.
+
+    Attributes
+    ----------
+    scenario
+        What is computed: a `DynamicsScenario`, or the declaration itself of a case of another kind.
+    provenance
+        File and line of every model path.
+    file
+        The file that was named or found.
+    name
+        Name of its folder, or of the file without its ending.
+    problems
+        Warnings of the reading.
+    origin
+        Where it was found, in words.
+    """
+
+    scenario: Declaration
+    provenance: Provenance
+    file: Path
+    name: str
+    problems: tuple[Problem, ...] = ()
+    origin: str = ""
+
+
+def load_case(case: str | Path) -> LoadedCase:
+    """Read the case of train dynamics at a path, or the shipped one of that name.
+
+    Raises
+    ------
+    InputError
+        With all problems of all its files.
+    UsageError
+        If there is no such case.
+    """
+    loaded, problems = read_case(case)
+    if loaded is None:
+        raise InputError(problems)
+    return loaded
+
+
+def read_case(case: str | Path) -> tuple[LoadedCase | None, list[Problem]]:
+    """Read a case and return it with all problems found; None instead of a case if there are errors.
+
+    Raises
+    ------
+    UsageError
+        If there is no such case.
+    """
+    found = find_case(case)
+    reader = Reader(found.file.parent)
+    scenario, root = read_arshad(reader, found) if found.is_ini else _read_yaml(reader, found)
+    problems = in_file_order(reader.problems)
+    if scenario is None or reader.has_errors:
+        return None, problems
+    provenance = Provenance(root)
+    return LoadedCase(scenario, provenance, found.file, found.name, tuple(problems), found.origin), problems
+
+
+def _read_yaml(reader: Reader, found: FoundCase) -> tuple[Declaration | None, Mark]:
+    source = Source(found.file, found.file.name, ROOT)
+    root = Mark(source.label)
+    # The kind decides what the file declares; the glance's own problems are told by the reading that follows.
+    glance = Reader(reader.folder).read(source, Declaration)
+    kind = glance.data.get("kind", "vehicles") if glance is not None else "vehicles"
+    if not isinstance(kind, str) or kind not in KINDS:
+        place = glance.mark.find(("kind",)).place if glance is not None else source.label
+        remedy = did_you_mean(str(kind), KINDS)
+        reader.problems.append(Problem("bad_choice", f"{ROOT}.kind", shown(kind), ", ".join(KINDS), remedy, place=place))
+        return None, root
+    model = KINDS[kind]
+    content = reader.read(source, model)
+    if content is None:
+        return None, root
+    root.children[ROOT] = content.mark
+    declared = reader.validated(model, content)
+    return (_resolved(reader, found, content, root, declared) if model is Case else declared), root
+
+
+def _resolved(
+    reader: Reader, found: FoundCase, content: Input, root: Mark, declared: Declaration | None
+) -> DynamicsScenario | None:
+    # Also of a broken case the vehicles are read, so that their problems are told in the same breath.
+    stock = RollingStock(reader, found.file.parent)
+    stock.add_case(content)
+    root.children |= {"vehicles": stock.vehicles.mark(), "couplings": stock.couplings.mark()}
+    if not isinstance(declared, Case) or reader.has_errors:
+        return None
+    return DynamicsScenario(case=declared, vehicles=stock.vehicles.sorted(), couplings=stock.couplings.sorted())
