@@ -66,8 +66,8 @@ header row names the keys, those of a nested mapping with dots (`start.time`). A
 `calls`, holds names of further CSV files.
 
 Trains, vehicles and couplings are looked for by their id in `rollingstock` of the folder of the study or case, then of the
-working folder, then among what ships. A character of an id that a file name cannot hold is written as `%` and two hexadecimal digits (`a%2Fb.yaml` for
-a/b).
+working folder, then among what ships. A character of an id that a file name cannot hold is written as `%` and two
+hexadecimal digits (`a%2Fb.yaml` for a/b).
 """
 CONDUCTORS = ("<!-- conductors that ship: made by `make docs`; do not edit -->\n", "<!-- end of the conductors that ship -->\n")
 RATINGS = ("<!-- ratings that ship: made by `make docs`; do not edit -->\n", "<!-- end of the ratings that ship -->\n")
