@@ -1,0 +1,1 @@
+"""TrainDyn: trains as point masses in discrete-event simulations (Diviš and Kavička)."""
