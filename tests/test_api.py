@@ -10,9 +10,9 @@ import tractionpower as tp
 
 README = Path(__file__).parents[1] / "README.md"
 NAMES = [
-    "InputError", "OutputError", "Problem", "Results", "Scenario", "Selection", "TractionPowerError", "UsageError",
-    "change", "check", "compare", "contingency", "feasibility", "journeys", "load", "load_case", "save", "select",
-    "simulate", "size", "sweep",
+    "DynTrain", "InputError", "OutputError", "Polyline", "Problem", "Results", "Scenario", "Selection", "TractionPowerError",
+    "TrainCharacteristics", "TrainDynamics", "UsageError", "change", "check", "compare", "contingency", "feasibility", "journeys",
+    "load", "load_case", "save", "select", "simulate", "size", "sweep",
 ]  # fmt: skip
 
 

@@ -11,11 +11,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tractionpower.cosimulation.check import check_scenario as check
     from tractionpower.cosimulation.simulate import simulate
+    from tractionpower.dynamics.traindyn.core import TrainDynamics
+    from tractionpower.dynamics.traindyn.polyline import Polyline
+    from tractionpower.dynamics.traindyn.train import DynTrain
     from tractionpower.errors import InputError, OutputError, Problem, TractionPowerError, UsageError
     from tractionpower.io.dynamics_files import load_case
     from tractionpower.io.library import change
     from tractionpower.io.scenario_files import load
     from tractionpower.io.scenario_files import save_scenario as save
+    from tractionpower.model.dynamics.point_mass import TrainCharacteristics
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.results import Results
     from tractionpower.results.selection.select import select
@@ -28,13 +32,17 @@ if TYPE_CHECKING:
     from tractionpower.studies.sweep.study import sweep
 
 _HOMES = {
+    "DynTrain": ("dynamics.traindyn.train", "DynTrain"),
     "InputError": ("errors", "InputError"),
     "OutputError": ("errors", "OutputError"),
+    "Polyline": ("dynamics.traindyn.polyline", "Polyline"),
     "Problem": ("errors", "Problem"),
     "Results": ("results.results", "Results"),
     "Scenario": ("model.scenario", "Scenario"),
     "Selection": ("results.selection.selection", "Selection"),
     "TractionPowerError": ("errors", "TractionPowerError"),
+    "TrainCharacteristics": ("model.dynamics.point_mass", "TrainCharacteristics"),
+    "TrainDynamics": ("dynamics.traindyn.core", "TrainDynamics"),
     "UsageError": ("errors", "UsageError"),
     "change": ("io.library", "change"),
     "check": ("cosimulation.check", "check_scenario"),
@@ -52,13 +60,17 @@ _HOMES = {
 }
 
 __all__ = [
+    "DynTrain",
     "InputError",
     "OutputError",
+    "Polyline",
     "Problem",
     "Results",
     "Scenario",
     "Selection",
     "TractionPowerError",
+    "TrainCharacteristics",
+    "TrainDynamics",
     "UsageError",
     "change",
     "check",
