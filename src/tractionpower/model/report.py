@@ -44,6 +44,11 @@ FIGURES = (
     "utilisation", "device_load_duration", "sharing", "demand", "useful_voltage_zones", "curves", TRAIN_FIGURES,
     "envelope_voltage", "envelope_rails", "outage_voltages", "outage_delays", "worst_utilisation", "outages_by_km",
     "sweep_curves", "sweep_maps", "sweep_differences", "sweep_scatter", "sweep_voltage", "compare_voltage", "compare_substations",
+    "dynamics_controls", "dynamics_speeds", "coupling_forces", "coupling_extremes", "coupling_loops", "coupling_first",
+    "brake_cylinders", "dynamics_efforts", "relative_positions", "stopping", "drive_and_speed", "brake_and_speed",
+    "coupling_histogram", "acceleration_histogram", "coupling_cycles", "dynamics_energies",
+    "arshad_5_speed", "arshad_6_tractive_effort", "arshad_7_acceleration", "arshad_8_cylinder_pressure", "arshad_9_coupler",
+    "arshad_10_relative_position",
 )  # fmt: skip
 """Names of all figures but those of measurements, which are called by their series, to tell a misspelt one of a template.
 

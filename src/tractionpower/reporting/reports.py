@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tractionpower.errors import OutputError
+from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.texts import language, tr
@@ -23,9 +24,14 @@ PARTS = frozenset({"workbook", "figures"})
 
 
 def write_reports(
-    results: Results, scenario: Scenario, folder: Path, report: Report | None = None, *, only: frozenset[str] | None = None
+    results: Results,
+    scenario: Scenario | DynamicsScenario,
+    folder: Path,
+    report: Report | None = None,
+    *,
+    only: frozenset[str] | None = None,
 ) -> list[Path]:
-    """Write figures and workbook of a run, or of a study of many, into `folder` and return their paths.
+    """Write figures and workbook of a run, of a study of many or of train dynamics, into `folder` and return their paths.
 
     One report that cannot be written does not hinder the others; tables are not touched. `report` is the template: language,
     choice of sheets and figures; None: English, all of them. `only` names the `PARTS` to write; None: all.
@@ -60,7 +66,9 @@ def write_reports(
     return paths
 
 
-def _write_figures(results: Results, scenario: Scenario, folder: Path, report: Report) -> tuple[list[Path], Sequence[str]]:
+def _write_figures(
+    results: Results, scenario: Scenario | DynamicsScenario, folder: Path, report: Report
+) -> tuple[list[Path], Sequence[str]]:
     """Write the figures that the template chooses; return their paths, and in words which of its names no figure has."""
     from tractionpower.reporting.figures.base.drawing import drawing
     from tractionpower.reporting.figures.registry import figure_names, figure_writer, remove_others, unknown_names

@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
+from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.figures import of_run
 from tractionpower.reporting.figures.base.drawing import FORMATS, files_of, remove_files, stands_for
+from tractionpower.reporting.figures.dynamics import of_chain
 from tractionpower.reporting.figures.many import compare_figures, sweep_figures
 from tractionpower.reporting.figures.many.outage_map import MAP
 from tractionpower.results.results import Results
 
-FigureWriter = Callable[[Results, Scenario, Path], list[Path]]
+FigureWriter = Callable[[Results, Any, Path], list[Path]]
+"""Takes results, what they are results of, which is of their kind, and the folder."""
 
 
 def figure_writer(kind: str) -> FigureWriter:
@@ -22,6 +26,7 @@ def figure_writer(kind: str) -> FigureWriter:
         "contingency": of_run.write_outage_figures,
         "sweep": sweep_figures.write_sweep_figures,
         "compare": compare_figures.write_compare_figures,
+        "dynamics": of_chain.write_chain_figures,
     }
     return writers.get(kind, of_run.write_figures)
 
@@ -29,12 +34,12 @@ def figure_writer(kind: str) -> FigureWriter:
 def figure_names() -> tuple[str, ...]:
     """Return the names of all figures; those of groups and folders stand for more than one."""
     of_many = (*of_run.OUTAGES, MAP, *sweep_figures.NAMES, *compare_figures.NAMES)
-    return (*of_run.GRAPHS, *of_run.SINGLE, *of_run.GROUPED, of_run.TRAINS, *of_many)
+    return (*of_run.GRAPHS, *of_run.SINGLE, *of_run.GROUPED, of_run.TRAINS, *of_many, *of_chain.NAMES)
 
 
-def unknown_names(chosen: Sequence[str], scenario: Scenario) -> list[str]:
+def unknown_names(chosen: Sequence[str], scenario: Scenario | DynamicsScenario) -> list[str]:
     """Return which of the chosen names of figures no figure has; `trains/ID` needs such a train in the timetable."""
-    trains = [f"{of_run.TRAINS}/{run.id}" for run in scenario.runs]
+    trains = [f"{of_run.TRAINS}/{run.id}" for run in scenario.runs] if isinstance(scenario, Scenario) else []
     known = figure_names()
     return [name for name in chosen if name not in trains and not any(_is_of(name, each) for each in known)]
 

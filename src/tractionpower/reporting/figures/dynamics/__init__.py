@@ -1,0 +1,1 @@
+"""Figures of train dynamics: controls, speeds, forces of couplings, brakes, statistics."""

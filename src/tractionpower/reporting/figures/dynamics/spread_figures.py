@@ -1,0 +1,183 @@
+"""How often what came about: levels and speeds together, forces, accelerations, cycles of the forces of couplings."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from numpy.typing import NDArray
+
+from tractionpower.reporting.facts.chain_data import ChainData
+from tractionpower.reporting.figures.base.style import BLUE, INK, PAGE, SMALLEST, STYLE, new_figure
+from tractionpower.reporting.figures.dynamics.panels import LINES, coupling_told, label, titled
+from tractionpower.reporting.figures.supply.panels import legend_below
+from tractionpower.reporting.texts import number, tr
+
+Array = NDArray[Any]
+
+LEAST_SHARE = 1e-6
+"""A bin in which a smaller part of the time was spent is empty."""
+
+MOST_NUMBERS = 14
+"""Columns of a joint distribution whose bins have their numbers written in them."""
+
+SHADES = "Blues"
+
+PLAIN = FuncFormatter(lambda value, _: number(value, 3))
+"""Ticks of a logarithmic axis as numbers."""
+
+
+def drive_and_speed(data: ChainData) -> Figure | None:
+    """Draw the joint distribution of drive control and speed (Zobory and Bekefi, figure 15)."""
+    return _joint(
+        data, "drive_speed", tr("drive control u₁, level"), tr("joint distribution of drive control and speed, P{u₁, v}")
+    )
+
+
+def brake_and_speed(data: ChainData) -> Figure | None:
+    """Draw the joint distribution of brake control and speed (Zobory and Bekefi, figure 16)."""
+    return _joint(
+        data, "brake_speed", tr("brake control u₂, level"), tr("joint distribution of brake control and speed, P{u₂, v}")
+    )
+
+
+def rows_of(data: ChainData, which: str) -> pd.DataFrame:
+    """Return the bins of one distribution in which time was spent, ends that are open closed by the width of their neighbour."""
+    rows = data.table("distributions")
+    if rows.empty:
+        return rows
+    own = rows[rows["of"].astype(str) == which].copy()
+    width = float((own["highest"] - own["lowest"]).median())
+    own["from_"] = own["lowest"].fillna(own["highest"] - width)
+    own["to"] = own["highest"].fillna(own["lowest"] + width)
+    return own
+
+
+def _joint(data: ChainData, which: str, words: str, title: str) -> Figure | None:
+    rows = rows_of(data, which)
+    used = rows[rows["frequency"] > LEAST_SHARE] if len(rows) else rows
+    if used.empty:
+        return None
+    per = data.units["speed"].per
+    low, high = float(used["from_"].min()), float(used["to"].max())
+    rows = rows[(rows["from_"] >= low - 1e-9) & (rows["to"] <= high + 1e-9)]
+    begins = np.unique(rows["from_"].to_numpy(float))
+    levels = np.arange(0, int(used["level"].max()) + 1)
+    share = np.full((len(levels), len(begins)), np.nan)
+    kept = rows[rows["level"].isin(levels)]
+    share[kept["level"].to_numpy(int), np.searchsorted(begins, kept["from_"].to_numpy(float))] = kept["frequency"].to_numpy(float)
+    share[share <= LEAST_SHARE] = np.nan
+    with mpl.rc_context(STYLE | {"axes.grid": False}):
+        figure = new_figure(PAGE, min(1.7 + 0.24 * max(len(levels), 5), 5.6))
+        axes = figure.add_subplot()
+        edges = np.append(begins, high) * per
+        mesh = axes.pcolormesh(edges, np.append(levels, levels[-1] + 1) - 0.5, 100.0 * share, cmap=SHADES, vmin=0.0,
+                               edgecolors="white", linewidth=0.4)  # fmt: skip
+        bar = figure.colorbar(mesh, ax=axes, pad=0.015, fraction=0.055)
+        bar.set_label(tr("share of the time [%]"), fontsize=SMALLEST)
+        bar.ax.tick_params(labelsize=SMALLEST)
+        if len(begins) <= MOST_NUMBERS:
+            _write_shares(axes, edges, share)
+        axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.set_ylabel(words)
+        axes.set_xlabel(label(data, "speed", tr("speed")))
+        return titled(figure, data, title)
+
+
+def _write_shares(axes: Axes, edges: Array, share: Array) -> None:
+    """Write into each bin its share of the time [%]."""
+    most = float(np.nanmax(share))
+    for level, column in np.argwhere(np.isfinite(share)):
+        value = share[level, column]
+        colour = "white" if value > 0.55 * most else INK
+        middle = (edges[column] + edges[column + 1]) / 2
+        text = number(100.0 * value, 1) if value >= 0.0005 else f"< {number(0.1)}"
+        axes.text(middle, level, text, ha="center", va="center", fontsize=SMALLEST, color=colour)
+
+
+def coupling_histogram(data: ChainData) -> Figure | None:
+    """Draw how often which force was in the first coupling (Zobory and Bekefi, figure 17)."""
+    title = tr("relative frequency of the force of the first coupling")
+    return _histogram(data, "coupler_force", "force", tr("force, tension positive"), title)
+
+
+def acceleration_histogram(data: ChainData) -> Figure | None:
+    """Draw how often the first vehicle had which acceleration (Zobory and Bekefi, figure 18)."""
+    title = tr("relative frequency of the acceleration of the first vehicle")
+    return _histogram(data, "acceleration", "acceleration", tr("acceleration"), title)
+
+
+def _histogram(data: ChainData, which: str, quantity: str, words: str, title: str) -> Figure | None:
+    rows = rows_of(data, which)
+    used = rows[rows["frequency"] > LEAST_SHARE] if len(rows) else rows
+    if used.empty:
+        return None
+    per = data.units[quantity].per
+    with mpl.rc_context(STYLE):
+        figure = new_figure(PAGE, 3.3)
+        axes = figure.add_subplot()
+        low, wide = used["from_"].to_numpy(float) * per, (used["to"] - used["from_"]).to_numpy(float) * per
+        style: Any = {"align": "edge", "color": BLUE, "edgecolor": "white", "linewidth": 0.5, "zorder": 2}
+        axes.bar(low, 100.0 * used["frequency"].to_numpy(float), wide, **style)
+        span = max(float((low + wide).max() - low.min()), 8.0 * float(wide.max()))
+        middle = (float((low + wide).max()) + float(low.min())) / 2
+        axes.set_xlim(middle - 0.53 * span, middle + 0.53 * span)
+        axes.set_xlabel(label(data, quantity, words))
+        axes.set_ylabel(tr("share of the time [%]"))
+        open_ends = used["lowest"].isna() | used["highest"].isna()
+        told = tr("classes of {width} {unit}", width=number(float(np.median(wide)), 3), unit=data.units[quantity].unit)
+        if open_ends.any():
+            told += tr("; the outermost have no end")
+        return titled(figure, data, title, told)
+
+
+def rainflow(data: ChainData) -> Figure | None:
+    """Draw the cycles of the forces: by mean and range in the most loaded coupling, and how many exceed a range in some."""
+    if not data.has("rainflow"):
+        return None
+    rows = data.table("rainflow")
+    per = data.units["force"].per
+    own = rows[rows["coupling"].astype(str) == data.couplings[data.most_loaded]]
+    with mpl.rc_context(STYLE):
+        figure = new_figure(PAGE, 3.6, 0.05)
+        left, right = figure.subplots(1, 2)
+        _matrix(figure, left, data, own, per)
+        for colour, number_of in zip(LINES, data.chosen_couplings(), strict=False):
+            of = rows[rows["coupling"].astype(str) == data.couplings[number_of]].sort_values("range_kn", ascending=False)
+            if len(of):
+                count = of["cycles"].cumsum().to_numpy(float)
+                right.step(count, of["range_kn"].to_numpy(float) * per, where="pre", color=colour, linewidth=1.2,
+                           label=coupling_told(data.couplings[number_of]))  # fmt: skip
+        right.set_xscale("log")
+        right.xaxis.set_major_locator(LogLocator(numticks=6))
+        right.xaxis.set_major_formatter(PLAIN)
+        right.xaxis.set_minor_formatter(NullFormatter())
+        right.set_ylim(0.0, None)
+        right.set_xlabel(tr("cycles that reach or exceed the range"))
+        right.set_ylabel(label(data, "force", tr("range")))
+        legend_below(figure, *right.get_legend_handles_labels(), 3)
+        return titled(figure, data, tr("cycles of the forces of couplings, by rainflow counting"))
+
+
+def _matrix(figure: Figure, axes: Axes, data: ChainData, rows: pd.DataFrame, per: float) -> None:
+    """Draw how many cycles have which mean and range."""
+    axes.set_title(coupling_told(data.couplings[data.most_loaded]) + tr(", most loaded"), fontsize=8.0)
+    axes.set_xlabel(label(data, "force", tr("mean, tension positive")))
+    axes.set_ylabel(label(data, "force", tr("range")))
+    if rows.empty:
+        return
+    mean, wide = rows["mean_kn"].to_numpy(float) * per, rows["range_kn"].to_numpy(float) * per
+    counts, x, y = np.histogram2d(mean, wide, bins=16, weights=rows["cycles"].to_numpy(float))
+    counts[counts <= 0.0] = np.nan
+    most = max(float(np.nanmax(counts)), 1.0)
+    mesh = axes.pcolormesh(x, y, counts.T, cmap=SHADES, norm=LogNorm(0.25, 2.0 * most), edgecolors="white", linewidth=0.3)
+    bar = figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.06, format=PLAIN)
+    bar.ax.yaxis.set_minor_formatter(NullFormatter())
+    bar.set_label(tr("cycles"), fontsize=SMALLEST)
+    bar.ax.tick_params(labelsize=SMALLEST)
