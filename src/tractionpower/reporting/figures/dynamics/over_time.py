@@ -39,7 +39,7 @@ ENERGY_LOOKS: dict[str, tuple[str, Any]] = {
     "resistance": (GREY, (0, (5, 2))),
     "brake": (VERMILION, "-"),
     "electric": (PURPLE, "-"),
-    "grade": (GREEN, (0, (6, 2, 1, 2))),
+    "gravity": (GREEN, (0, (6, 2, 1, 2))),
     "coupling": (ORANGE, (0, (1, 1.2))),
     "kinetic": (SKY, "-"),
 }
@@ -226,7 +226,7 @@ def energies(data: ChainData) -> Figure | None:
         "resistance": tr("taken by running, curve and tunnel resistance"),
         "brake": tr("taken by the air brakes"),
         "electric": tr("taken by the electric brake"),
-        "grade": tr("lifted against the gradient"),
+        "gravity": tr("taken by gravity, negative downhill"),
         "coupling": tr("taken in by the couplings"),
         "kinetic": tr("change of kinetic energy"),
     }
@@ -242,6 +242,5 @@ def energies(data: ChainData) -> Figure | None:
         time_axis(axes, found.times)
         legend_below(figure, *axes.get_legend_handles_labels(), 2)
         end = {name: number(float(values[-1]), 2) for name, values in found.parts.items()}
-        told = tr("at the end: traction {traction} kWh, resistance {resistance} kWh, air brakes {brake} kWh, couplings {coupling} kWh",
-                  **{name: end.get(name, "0") for name in ("traction", "resistance", "brake", "coupling")})  # fmt: skip
+        told = tr("at the end: traction {traction} kWh, resistance {resistance} kWh, air brakes {brake} kWh", **end)
         return titled(figure, data, tr("energies"), told)

@@ -161,7 +161,8 @@ def rainflow(data: ChainData) -> Figure | None:
         right.set_ylim(0.0, None)
         right.set_xlabel(tr("cycles that reach or exceed the range"))
         right.set_ylabel(label(data, "force", tr("range")))
-        legend_below(figure, *right.get_legend_handles_labels(), 3)
+        handles, labels = right.get_legend_handles_labels()
+        legend_below(figure, handles, labels, 3)
         return titled(figure, data, tr("cycles of the forces of couplings, by rainflow counting"))
 
 

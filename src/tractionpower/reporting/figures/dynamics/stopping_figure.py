@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.figure import Figure
 
 from tractionpower.reporting.facts.chain_data import ChainData
@@ -20,7 +21,7 @@ MOST_STOPS = 6
 
 def stopping(data: ChainData) -> Figure | None:
     """Draw speed over distance of each stop from its first brake command, with the stopping distance."""
-    every = stops_of(data)
+    every = stops_of(data.results) if data.has("vehicles") else []
     if not every:
         return None
     shown = sorted(sorted(every, key=lambda stop: -stop.distance_m)[:MOST_STOPS], key=lambda stop: stop.from_s)
@@ -30,14 +31,14 @@ def stopping(data: ChainData) -> Figure | None:
         figure = new_figure(PAGE, 3.7)
         axes = figure.add_subplot()
         for colour, stop in zip(LINES, shown, strict=False):
-            rows = slice(stop.command, stop.stand + 1)
+            rows = (data.times > stop.from_s) & (data.times <= stop.to_s)
             words = tr(
                 "braked at {time} s: {distance} in {seconds} s, mean {deceleration}", time=number(stop.from_s),
                 distance=told_value(data, "distance", stop.distance_m), seconds=number(stop.time_s),
                 deceleration=told_value(data, "acceleration", stop.deceleration_mps2),
             )  # fmt: skip
-            run = (place[rows] - place[stop.command]) * far
-            line(axes, run, speed[rows] * fast, color=colour, label=words, linewidth=1.3)
+            run = np.append(0.0, place[rows] - stop.from_m) * far
+            line(axes, run, np.append(stop.speed_kmh, speed[rows]) * fast, color=colour, label=words, linewidth=1.3)
             end = stop.distance_m * far
             axes.plot([end], [0.0], "o", color=colour, markersize=4.5, clip_on=False, zorder=4)
             style: Any = {"textcoords": "offset points", "ha": "right", "va": "bottom", "color": INK, "fontsize": 7.5}
@@ -46,7 +47,8 @@ def stopping(data: ChainData) -> Figure | None:
         axes.set_xlim(0.0, 1.03 * max(stop.distance_m for stop in shown) * far)
         axes.set_xlabel(label(data, "distance", tr("distance of the first vehicle from the first brake command")))
         axes.set_ylabel(label(data, "speed", tr("speed")))
-        legend_below(figure, *axes.get_legend_handles_labels(), 2)
+        handles, labels = axes.get_legend_handles_labels()
+        legend_below(figure, handles, labels, 2)
         longest = max(shown, key=lambda stop: stop.distance_m)
         told = tr("stopping distance {distance} from {speed}", distance=told_value(data, "distance", longest.distance_m),
                   speed=told_value(data, "speed", longest.speed_kmh))  # fmt: skip
