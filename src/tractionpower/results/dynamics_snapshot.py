@@ -47,7 +47,7 @@ def snapshot(state: ChainState, forces_n: Array, reduction_pa: float, pipe_pa: f
         "resistance_kn": float(movers["resistance_n"].sum()) / KN,
         "first_coupling_kn": float(forces_n[0]) / KN if len(forces_n) else 0.0,
         "greatest_tension_kn": max(float(links["greatest_n"].max(initial=0.0)), 0.0) / KN,
-        "greatest_compression_kn": max(-float(links["least_n"].min(initial=0.0)), 0.0) / KN,
+        "greatest_compression_kn": abs(min(float(links["least_n"].min(initial=0.0)), 0.0)) / KN,
         "cylinder_bar": (float(cylinders[0]), float(cylinders[-1])),
         "pipe_bar": (pipe_pa - reduction_pa) / BAR,
         "energy_kwh": float(ledger["traction_j"]) / KWH,

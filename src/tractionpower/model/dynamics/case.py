@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, get_args
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic_core import PydanticCustomError
 
 from tractionpower.model.base import Count, Declaration, Format, Identifier, Real, Text
 from tractionpower.model.dynamics.coupling import Coupling
@@ -79,7 +80,32 @@ class CaseTrack(Declaration):
     )
 
 
+MOST_LEVELS = 100
+"""Levels that a control has at most."""
+
 BrakeWord = Literal["charge", "release", "full_service", "emergency", "unchanged"]
+
+BRAKE_WORDS: tuple[str, ...] = get_args(BrakeWord)
+
+
+def _brake_setting(value: Any) -> Any:
+    # A cell of a CSV file is a text, also where it holds a level.
+    if isinstance(value, str) and value.strip().isdecimal():
+        value = int(value)
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= MOST_LEVELS:
+        return value
+    if isinstance(value, str) and value in BRAKE_WORDS:
+        return value
+    told = f"a brake is a level from 0 to {MOST_LEVELS}, or one of {', '.join(BRAKE_WORDS)}; found {str(value)[:40]!r}"
+    raise PydanticCustomError("brake_setting", "{told}", {"told": told})
+
+
+BrakeSetting = Annotated[
+    int | str,
+    BeforeValidator(_brake_setting),
+    WithJsonSchema({"anyOf": [{"type": "integer", "minimum": 0, "maximum": MOST_LEVELS}, {"enum": [*BRAKE_WORDS]}]}),
+]
+"""Level of the brake control, or a word."""
 
 
 class Command(Declaration):
@@ -87,7 +113,7 @@ class Command(Declaration):
 
     time_s: Real = field("time_s", "Time from the start.", at_least=0)
     drive: Annotated[Count | None, Field(ge=0, le=100)] = Field(default=None, description="Level of the drive control.")
-    brake: Annotated[int, Field(strict=True, ge=0, le=100)] | BrakeWord | None = Field(
+    brake: BrakeSetting | None = Field(
         default=None, description="Level of the brake control, or charge (release), full_service, emergency, unchanged."
     )
     reduction_bar: Real | None = field(
