@@ -153,7 +153,7 @@ def _scenario(results: Results, folder: Path) -> Scenario:
 
     if "journeys" in results.run:
         raise UsageError(f"{folder} holds theoretical journeys, not a run; `tractionpower journey` draws them")
-    scenario = results.scenario
+    scenario: Scenario | None = results.scenario
     if scenario is None:
         raise UsageError(f"{folder}: the inputs are not kept with these results (scenario.json); run the study again")
     if not results.tables:

@@ -14,17 +14,16 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tractionpower.errors import UsageError
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.base import Declaration
 from tractionpower.results.disk import read_json
+from tractionpower.results.kept import SCENARIO_FILE, read_scenario_file
 from tractionpower.results.parts import count_rows, read_groups, read_joined
 from tractionpower.results.store import (
     KEY_FIGURES_FILE,
     RUN_FILE,
-    SCENARIO_FILE,
     find_unfinished,
     parts_of,
     read_run,
-    read_scenario_file,
     table_names,
     written_as,
 )
@@ -45,7 +44,7 @@ class Results:
     run: dict[str, Any]
     key_figures: list[dict[str, Any]]
     _source: Mapping[str, pa.Table | Sequence[Path]]
-    _scenario: Scenario | Path | None = None
+    _scenario: Declaration | Path | None = None
 
     def __repr__(self) -> str:
         rows = ", ".join(f"{name} ({self._row_count(name)} rows)" for name in self.tables)
@@ -70,15 +69,16 @@ class Results:
         return _open_unfinished(Path(folder)) if partial else _open_complete(Path(folder))
 
     @cached_property
-    def scenario(self) -> Scenario | None:
-        """What was computed; None if it was not kept with the results.
+    def scenario(self) -> Any:
+        """What was computed: a `Scenario`, of kind dynamics a `DynamicsScenario`; None if it was not kept with the results.
 
         Raises
         ------
         UsageError
             If it was kept, but this version does not understand it.
         """
-        return read_scenario_file(self._scenario) if isinstance(self._scenario, Path) else self._scenario
+        kind = str(self.run.get("kind") or "")
+        return read_scenario_file(self._scenario, kind) if isinstance(self._scenario, Path) else self._scenario
 
     @property
     def tables(self) -> list[str]:

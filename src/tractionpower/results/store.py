@@ -7,7 +7,6 @@ touched before the new results are complete.
 from __future__ import annotations
 
 import itertools
-import json
 import re
 import shutil
 from collections.abc import Iterator, Sequence
@@ -19,7 +18,7 @@ from typing import Any
 import pyarrow as pa
 
 from tractionpower.errors import UsageError
-from tractionpower.model.scenario import Scenario
+from tractionpower.model.base import Declaration
 from tractionpower.results.columns import TABLES
 from tractionpower.results.disk import (
     BESIDE,
@@ -35,6 +34,7 @@ from tractionpower.results.disk import (
     write_text,
     write_whole,
 )
+from tractionpower.results.kept import SCENARIO_FILE, canonical_json
 from tractionpower.results.parts import is_readable, join_parts, write_part
 
 RUN_FILE = "run.json"
@@ -42,7 +42,6 @@ KEY_FIGURES_FILE = "key_figures.json"
 JOINING = 2
 """Tables that are joined at a time: each needs memory for some row groups."""
 
-SCENARIO_FILE = "scenario.json"
 RUNNING = ".running"
 CONTINUED = "continued"
 PARTIAL = "partial"
@@ -85,7 +84,7 @@ class RunWriter:
         *,
         kind: str = "",
         force: bool = False,
-        scenario: Scenario | None = None,
+        scenario: Declaration | None = None,
     ) -> None:
         self.folder, self.study = folder, study
         self._kind = {"kind": kind} if kind else {}
@@ -108,8 +107,9 @@ class RunWriter:
         note: dict[str, Any] = {"format": 1, "status": "interrupted", "study": self.study, "input_hash": input_hash}
         note |= self._kind
         if self._scenario is not None:
-            write_text(self.running / SCENARIO_FILE, _canonical_json(self._scenario))
-            note |= {"name": self._scenario.name, "seed": self._scenario.seed, "verdicts": [], "ledgers": {}}
+            write_text(self.running / SCENARIO_FILE, canonical_json(self._scenario))
+            told = {key: getattr(self._scenario, key, other) for key, other in (("name", ""), ("seed", 0))}
+            note |= {**told, "verdicts": [], "ledgers": {}}
         write_json(self.running / RUN_FILE, note)
 
     def append(self, table: str, rows: pa.Table) -> None:
@@ -266,25 +266,6 @@ def parts_of(running: Path) -> dict[str, list[Path]]:
     for _, table, path in itertools.takewhile(lambda part: is_readable(part[2]), sorted(numbered)):
         tables.setdefault(table, []).append(path)
     return tables
-
-
-def read_scenario_file(path: Path) -> Scenario:
-    """Return the scenario that was kept with results.
-
-    Raises
-    ------
-    UsageError
-        If this version does not understand it.
-    """
-    try:
-        return Scenario.model_validate_json(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:  # also what pydantic raises
-        raise UsageError(f"{path}: not a scenario of this version of tractionpower; run the study again") from error
-
-
-def _canonical_json(scenario: Scenario) -> str:
-    # The text whose SHA-256 is the input hash of the scenario.
-    return json.dumps(scenario.model_dump(mode="json", by_alias=True), sort_keys=True, separators=(",", ":"), ensure_ascii=False)
 
 
 def _run_file(folder: Path) -> Path:

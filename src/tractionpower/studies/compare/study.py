@@ -148,9 +148,10 @@ def _inputs(base: Variant, other: Variant) -> list[InputDifference] | None:
 
 def _scenario(variant: Variant) -> Scenario | None:
     try:
-        return variant.results.scenario
+        scenario = variant.results.scenario
     except UsageError:  # inputs of another version of the program
         return None
+    return scenario if isinstance(scenario, Scenario) else None
 
 
 def _notes(variants: Sequence[Variant], inputs: dict[str, list[InputDifference] | None]) -> list[str]:
