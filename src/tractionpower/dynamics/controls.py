@@ -32,8 +32,8 @@ def append_control(case: Case, state: ChainState, setting: Setting) -> ChainStat
     pipe_rows = int(np.searchsorted(state.pipe["from_s"][: ledger["pipe_rows"]], now, side="right"))
     ledger["pipe_rows"] = max(pipe_rows, 1)
     state = state._replace(controls=_with_room(state.controls, ledger["control_rows"]), pipe=_with_room(state.pipe, pipe_rows))
+    state.controls[ledger["control_rows"]] = state.controls[ledger["control_row"]]
     row = state.controls[ledger["control_rows"]]
-    row[()] = state.controls[ledger["control_row"]]
     row["at_s"] = now
     state.controls["at_s"][ledger["control_rows"] + 1 :] = np.inf  # rows that are not in use never come
     if drive is not None:

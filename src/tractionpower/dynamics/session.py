@@ -94,7 +94,7 @@ class Session:
             reason = advance_chain(self.compiled.chain, self.state, self._buffers, self._work, until_s)
             if reason != BUFFER_FULL:
                 break
-            self._keep()
+            self._collect()
         if reason in (NOT_FINITE, STEP_TOO_SMALL):
             what = "a speed is no number any more" if reason == NOT_FINITE else "the variable step has become shorter than 1 ns"
             raise NotComputableError(f"at {self.time_s:.3f} s {what}; shorten step_s, or soften the stiffest coupling")
@@ -102,7 +102,7 @@ class Session:
 
     def take_rows(self) -> Rows:
         """Return what was recorded since the last call."""
-        self._keep()
+        self._collect()
         taken, self._kept = self._kept, []
         return Rows(*(np.concatenate(parts) for parts in zip(*taken, strict=True)))
 
@@ -149,11 +149,15 @@ class Session:
         """Go back to a copied state; what was recorded since stays recorded."""
         self.state = copied(state)
 
-    def _keep(self) -> None:
+    def _collect(self) -> None:
         buffers, (rows, turns) = self._buffers, self._buffers.used
         taken = buffers.chain[:rows], buffers.vehicles[:rows], buffers.links[:rows], buffers.turns[:turns]
         self._kept.append(Rows(*(part.copy() for part in taken)))
+        self._taken(self._kept[-1])
         buffers.used[:] = 0
+
+    def _taken(self, rows: Rows) -> None:
+        """Look at rows that have just been taken out of the buffers; those who want to derive from this class."""
 
 
 def copied(state: ChainState) -> ChainState:
