@@ -1,5 +1,5 @@
-"""Draw the figures of the README and of the pages anew: voltages, energy, coupling, delays, ratings, outages, variants, and
-pages of a workbook as they are printed, where LibreOffice and Poppler are there to print them.
+"""Draw the figures of the README and of the pages anew: voltages, energy, coupling, delays, ratings, outages, variants, loops of
+couplings between vehicles, and pages of a workbook as they are printed, where LibreOffice and Poppler are there to print them.
 
 Not part of `make docs`: these figures change with the data that ship, the reference pages with the declarations.
 """
@@ -10,18 +10,24 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
+import matplotlib as mpl
+import numpy as np
 from matplotlib.figure import Figure
 from PIL import Image
 
 import tractionpower as tp
 from tractionpower.cli import main
+from tractionpower.dynamics.couplings import loop
+from tractionpower.io.documents import read_document
 from tractionpower.io.scenario_files import load_scenario
+from tractionpower.model.dynamics.coupling import Coupling
 from tractionpower.model.report import Document, Report
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.facts.run_data import RunData
-from tractionpower.reporting.figures.base.style import save
+from tractionpower.reporting.figures.base.style import BLUE, GREY, PAGE, STYLE, VERMILION, new_figure, save
 from tractionpower.reporting.figures.delays.delay_graph import delay_graphs
 from tractionpower.reporting.figures.many.contingency_figures import envelope_voltage
 from tractionpower.reporting.figures.many.outage_map import outage_maps
@@ -33,6 +39,7 @@ from tractionpower.reporting.figures.trains.coupling_figure import compare_coupl
 from tractionpower.reporting.workbook import write_workbook
 
 IMAGES = Path(__file__).parent / "images"
+COUPLINGS = IMAGES.parents[1] / "rollingstock" / "couplings"
 
 OUTAGE = (
     "name=CMK, rectifiers of Idzikowice out",
@@ -147,7 +154,39 @@ def draw_future() -> Iterator[tuple[str, Figure]]:
     yield "cmk-2040-variants.png", sweep_figures(tp.sweep(out, vary, library=loaded.library, workers=2), out)["sweep_maps"]
 
 
+LOOPS = (
+    ("arshad-eq8-9", "wedge, Arshad et al., eq. 6 to 9", (0, 130, 95, 112, 60, 105, 50, -50, -130, -95, -112, -50, 0)),
+    ("russian-elastic-friction", "preload, release, solid stop", (0, 60, 30, 117, 25, -25, -60, -30, -117, -25, 0)),
+    ("uic-screw-coupling", "pulled: screw; pushed: buffers", (0, 80, 40, 90, 15, -15, -110, -60, -200, -15, 0)),
+    ("zobory-linear", "spring and damper, Zobory and Bekefi", (0, 60, -60, 0)),
+)
+"""Couplings that ship, what they show, and the deflections [mm] between which they are moved."""
+
+SPEEDS = ((0.2, BLUE, "-"), (0.01, VERMILION, (0, (4, 2))))
+"""Speeds of the loops [m/s]: faster and slower than that at which friction is kinetic."""
+
+
+def draw_loops() -> Figure:
+    """Draw force over deflection of couplings that ship, moved to and fro fast and slowly."""
+    with mpl.rc_context(STYLE):
+        figure = new_figure(PAGE, 4.6)
+        for (name, told, ends), axes in zip(LOOPS, figure.subplots(2, 2).flat, strict=True):
+            coupling = read_document(COUPLINGS / f"{name}.yaml", Coupling)
+            path = np.concatenate([np.linspace(low, high, 400)[1:] for low, high in pairwise(ends)])
+            for speed, colour, dashes in SPEEDS:
+                axes.plot(
+                    path, loop(coupling, path, speed), color=colour, linestyle=dashes, linewidth=1.0, label=f"{speed:g} m/s"
+                )
+            axes.set_title(f"{name}\n{told}", fontsize=8.5)
+            axes.axhline(0.0, color=GREY, linewidth=0.6)
+            axes.set_xlabel("deflection [mm]; pulled: positive")
+            axes.set_ylabel("force [kN]")
+        figure.axes[0].legend(loc="upper left")
+    return figure
+
+
 if __name__ == "__main__":
+    keep(draw_loops(), "coupling-loops.png")
     for name, drawn in draw_future():
         keep(drawn, name)
     keep(draw_delays(), "weak-delay-graph.png")

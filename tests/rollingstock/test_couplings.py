@@ -34,6 +34,15 @@ def test_the_readme_lists_them_all():
     assert len(rows) == len(SHIPPED) == 9
 
 
+def test_the_example_of_the_page_is_sound(tmp_path):
+    page = (FOLDER.parents[1] / "docs" / "couplings.md").read_text(encoding="utf-8")
+    path = tmp_path / "my-gear.yaml"
+    path.write_text(page.split("```yaml\n")[1].split("```")[0], encoding="utf-8")
+    found = read_document(path, Coupling)
+    assert check_coupling(found, "my-gear") == []
+    assert found.id == path.stem
+
+
 def energies(name, half_slack_mm, top_mm):
     """Return the work that pushing takes up to a deflection of the buffers, and what is lost of it on the way back [kJ]."""
     way = -np.r_[np.linspace(0.0, half_slack_mm + top_mm, 4001), half_slack_mm + top_mm - np.geomspace(1e-6, top_mm, 4001)]
