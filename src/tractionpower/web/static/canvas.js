@@ -105,7 +105,8 @@ export function drawTrack(canvas, profile, curves, place, length) {
   for (const [start, end, permille] of profile) {
     const [a, b] = [Math.max(x(start), left), Math.min(x(end), width - right)];
     if (start > from && start < to) line(ctx, x(start), y(heightAt(start)) - 4, x(start), height - bottom + 9, "line");
-    if (b - a > 44) text(ctx, `${permille > 0 ? "+" : ""}${number(permille, 1)} ‰`, (a + b) / 2, y(heightAt((Math.max(start, from) + Math.min(end, to)) / 2)) - 5, "center");
+    const isCovered = a < x(place) + 4 && b > x(place - length) && (a + b) / 2 > x(place - length) - 22 && (a + b) / 2 < x(place) + 26;
+    if (b - a > 44 && !isCovered) text(ctx, `${permille > 0 ? "+" : ""}${number(permille, 1)} ‰`, (a + b) / 2, y(heightAt((Math.max(start, from) + Math.min(end, to)) / 2)) - 5, "center");
   }
   for (const [start, end, radius, turns] of curves) {
     const [a, b] = [Math.max(x(start), left), Math.min(x(end), width - right)];
@@ -115,6 +116,7 @@ export function drawTrack(canvas, profile, curves, place, length) {
     if (b - a > 70) text(ctx, `R ${number(radius, 0)} m ${turns}`, (a + b) / 2, height - bottom + 3, "center", "green");
   }
   drawTrain(ctx, place, length, x, (s) => y(heightAt(s)));
+  ctx.lineWidth = 1;
   const { found } = ticks(from, to, Math.max(width / 110, 2));
   for (const tick of found) {
     line(ctx, x(tick), height - 15, x(tick), height - 12, "grey");

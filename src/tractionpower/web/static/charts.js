@@ -60,7 +60,10 @@ export class Strips {
       scales: { x: { time: false }, y: { range: (plot, low, high) => rangeOf(what, this.highest, low, high) } },
       axes: [
         { ...axis, size: 19, gap: 3, space: 60 },
-        { ...axis, size: 46, gap: 4, space: 22, values: (plot, ticks) => ticks.map((tick) => String(tick).replace("-", "−")) },
+        {
+          ...axis, size: 46, gap: 4, space: 22, splits: what.stepped ? () => levelTicks(this.highest) : undefined,
+          values: (plot, ticks) => ticks.map((tick) => String(tick).replace("-", "−")),
+        },
       ],
       series: [
         {},
@@ -129,8 +132,14 @@ export class Strips {
   }
 }
 
+// A few levels either way, the highest among them.
+function levelTicks(highest) {
+  const [drive, brake] = [highest?.drive || 15, highest?.brake || 15];
+  return [-brake, -Math.round(brake / 2), 0, Math.round(drive / 2), drive];
+}
+
 function rangeOf(what, highest, low, high) {
-  if (what.stepped) return [-(highest?.brake ?? 15) - 1.5, (highest?.drive ?? 15) + 1.5];
+  if (what.stepped) return [-(highest?.brake || 15) - 1.5, (highest?.drive || 15) + 1.5];
   if (low === null || low === undefined) return what.fromZero ? [0, what.least] : [-what.least, what.least];
   const pad = 0.08 * Math.max(high - low, what.least);
   if (what.fromZero) return [0, Math.max(high + pad, what.least)];

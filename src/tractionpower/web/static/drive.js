@@ -13,7 +13,7 @@ const STATISTICS = [
   { name: "brake_speed", title: "P{u₂, v}", unit: "km/h", heat: "vermilion" },
   { name: "force", title: "First coupling", unit: "kN", bars: "purple" },
   { name: "acceleration", title: "Acceleration", unit: "m/s²", bars: "green" },
-  { name: "rainflow", title: "Rainflow cycles of the first coupling, by range", unit: "kN", bars: "orange", logarithmic: true },
+  { name: "rainflow", title: "Rainflow cycles by range, first coupling", unit: "kN", bars: "orange", logarithmic: true },
 ];
 
 let hello = null;
@@ -291,7 +291,7 @@ function drawStatistics() {
     const data = statistics[item.name];
     if (item.heat) {
       const most = drawHeat(item.canvas, data, item.heat);
-      item.value.textContent = `up to ${number(most, 2)}`;
+      item.canvas.title = `Relative frequency; the darkest cell: ${number(most, 3)}`;
     } else {
       drawBars(item.canvas, data, item.bars, item.logarithmic);
       if (item.logarithmic) item.value.textContent = `${number(data.bars.reduce((sum, value) => sum + value, 0), 1)} cycles`;
