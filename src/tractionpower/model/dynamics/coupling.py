@@ -36,13 +36,14 @@ class Gear(Declaration):
         "stiffness_kn_per_mm", "Stiffness of a linear spring; instead of points.", above=0, default=None
     )
     loading: tuple[GearPoint, ...] = Field(
-        default=(), description="Force while it is loaded, rising; beyond the last point the last slope holds."
+        default=(),
+        description="Force while it is loaded, rising; straight from 0 to the first point; the last slope goes on.",
     )
     unloading: tuple[GearPoint, ...] = Field(
         default=(), description="Force while it is unloaded, nowhere above loading; left out: by damping_percent."
     )
     damping_percent: Real = field(
-        "damping_percent", "Part of the force that is missing on unloading, and of the work that is lost.",
+        "damping_percent", "Part of the force that is missing on unloading, and of the work that is lost; less when locked.",
         at_least=0, at_most=100, default=0.0,
     )  # fmt: skip
     wedge: Wedge | None = Field(default=None, description="Friction wedge; loading is the curve of its spring then.")
