@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from small_couplings import SPRING_8_9, TAN_35, coupling, cycle, points, trace, wedge, work
 
 from tractionpower.dynamics.couplings import coupling_tables
-from tractionpower.kernels.chain_tables import LINK
+from tractionpower.kernels.chain_state import LINK
 
 SPRING = {"loading": points(*SPRING_8_9)}
 LOCKED = {"locked_stiffness_kn_per_mm": 600.0}

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from chains import AT_ONCE, FULL, G, LOCOMOTIVE, WAGON, WEDGE, Chained, advanced, free, make_chain, pulled, spring
+from chains import AT_ONCE, FULL, LOCOMOTIVE, WAGON, WEDGE, Chained, G, advanced, free, make_chain, pulled, spring
 from scipy.integrate import solve_ivp
 
 DRAG = {"specific_a_n_per_kn": 1.6, "specific_c_n_per_kn_per_kmh2": 5.7045e-4}
@@ -137,7 +137,7 @@ def test_halving_the_step_shrinks_the_error_by_the_order(method, lag_s, steps, o
     errors = smooth_errors([{"method": method, "step_s": step} for step in steps], lag_s)
     found = np.log2(errors[:-1] / errors[1:])
     assert found.min() > order - 0.25, errors
-    if method == "euler" or lag_s == 0.0 and method == "rk4":  # the others do better where speeds matter little
+    if method == "euler" or (lag_s == 0.0 and method == "rk4"):  # the others do better where speeds matter little
         assert found.max() < order + 0.6, errors
 
 

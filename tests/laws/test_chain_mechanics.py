@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from chains import AT_ONCE, FULL, G, LOCOMOTIVE, WAGON, WEDGE, Chained, advanced, free, make_chain, pulled, spring
+from chains import AT_ONCE, FULL, LOCOMOTIVE, WAGON, WEDGE, Chained, G, advanced, free, make_chain, pulled, spring
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -93,7 +93,9 @@ DAMPED = {"damping_kns_per_m": 4000.0}
 
 def steady(scenario, until_s=14.0):
     chained = advanced(scenario, until_s)
-    np.testing.assert_allclose(chained.vehicle_rows["a_mps2"][-1], chained.vehicle_rows["a_mps2"][-1].mean(), rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(
+        chained.vehicle_rows["a_mps2"][-1], chained.vehicle_rows["a_mps2"][-1].mean(), rtol=1e-6, atol=1e-9
+    )
     return chained
 
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from chains import G, LOCOMOTIVE, WAGON, WEDGE, Chained, advanced, make_chain, spring
+from chains import LOCOMOTIVE, WAGON, WEDGE, Chained, G, advanced, make_chain, spring
 
 METHODS = ("symplectic", "rk4", "euler", "variable")
 DRAG = {"specific_a_n_per_kn": 2.0}
@@ -15,7 +15,11 @@ def on_slope(permille, n=5, coupling=WEDGE, drag=DRAG, track=(), **more):
     wagon = WAGON | {"resistance": drag}
     gradients = [{"from_m": -5000.0, "to_m": 5000.0, "permille": permille}]
     return make_chain(
-        [{"id": "wagon", "count": n}], coupling, (wagon,), track={"gradients": gradients, "rounding_radius_m": 0.0} | dict(track), **more
+        [{"id": "wagon", "count": n}],
+        coupling,
+        (wagon,),
+        track={"gradients": gradients, "rounding_radius_m": 0.0} | dict(track),
+        **more,
     )
 
 

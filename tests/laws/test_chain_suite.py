@@ -147,7 +147,9 @@ def test_nothing_swings_up(runs, power, track):
 @pytest.mark.parametrize("coupling", ["arshad", "tps-friction"])
 def test_half_the_step_gives_the_same_extremes(coupling):
     run = {"duration_s": 120.0, "step_s": 0.005, "record_every_s": 0.1}
-    whole, half = (Chained(train("head and middle", "crest", coupling, run=run | {"step_s": step_s})) for step_s in (0.005, 0.0025))
+    whole, half = (
+        Chained(train("head and middle", "crest", coupling, run=run | {"step_s": step_s})) for step_s in (0.005, 0.0025)
+    )
     for chained in (whole, half):
         chained.advance(120.0)
     scale = half.links["greatest_n"].max()

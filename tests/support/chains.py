@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tractionpower.dynamics.compile import compile_chain
 from tractionpower.kernels.chain import advance_chain
-from tractionpower.kernels.chain_tables import (
+from tractionpower.kernels.chain_state import (
     BUFFER_FULL,
     CHAIN_ROW,
     LINK_ROW,
@@ -131,6 +131,7 @@ class Chained:
             reason = advance_chain(self.chain, self.state, self._buffers, self.work, until_s)
             used = self._buffers.used[0]
             self._taken.append(tuple(kept[:used].copy() for kept in self._buffers[:3]))
+            self.turns = self._buffers.turns[: self._buffers.used[1]].copy()
             self._buffers.used[:] = 0
             if reason != BUFFER_FULL:
                 return int(reason)

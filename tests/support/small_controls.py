@@ -8,7 +8,8 @@ from tractionpower.dynamics.brakes import compile_brakes, settled_cylinder_pa
 from tractionpower.dynamics.commands import compile_commands
 from tractionpower.dynamics.engines import compile_engines
 from tractionpower.kernels.air_brake import brake_force, friction_of, move_brakes, reduction_at, take_back_brakes
-from tractionpower.kernels.chain_tables import LEDGER, MOVER, POINT, VEHICLE, Chain, ChainState
+from tractionpower.kernels.chain_state import LEDGER, MOVER, ChainState
+from tractionpower.kernels.chain_tables import POINT, VEHICLE, Chain
 from tractionpower.kernels.engines import electric_effort, lagged, steady_effort
 from tractionpower.kernels.jit import njit
 from tractionpower.kernels.wayside import GRAVITY
@@ -65,7 +66,7 @@ def compiled(given: DynamicsScenario) -> tuple[Chain, ChainState]:
     empty = np.zeros(0, MOVER)
     chain = Chain(
         empty, vehicles, engines.engines, engines.levels, brakes.brakes, brakes.frictions, brakes.grid, brakes.air,
-        empty, empty, np.array(curves, POINT), empty, empty, empty,
+        empty, empty, np.array(curves, POINT), empty, empty, empty, empty,
     )  # fmt: skip
     state = ChainState(movers, np.zeros(0, MOVER), ledger, pipe, controls, _EMPTY, _EMPTY, _EMPTY, _EMPTY)
     return chain, state

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tractionpower.dynamics.couplings import coupling_tables
-from tractionpower.kernels.chain_tables import LINK
+from tractionpower.kernels.chain_state import LINK
 from tractionpower.kernels.couplings import trace_coupling
 from tractionpower.model.dynamics.coupling import Coupling
 

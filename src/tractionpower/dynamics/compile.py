@@ -15,21 +15,8 @@ from tractionpower.dynamics.couplings import compile_couplings
 from tractionpower.dynamics.engines import compile_engines
 from tractionpower.dynamics.masses import inertias, masses
 from tractionpower.dynamics.way import compile_way
-from tractionpower.kernels.chain_tables import (
-    CHAIN,
-    EULER,
-    HISTOGRAM,
-    LEDGER,
-    LINK,
-    MOVER,
-    POINT,
-    RK4,
-    SYMPLECTIC,
-    VARIABLE,
-    VEHICLE,
-    Chain,
-    ChainState,
-)
+from tractionpower.kernels.chain_state import LEDGER, LINK, MOVER, ChainState
+from tractionpower.kernels.chain_tables import CHAIN, EULER, HISTOGRAM, POINT, RK4, SYMPLECTIC, VARIABLE, VEHICLE, Chain
 from tractionpower.kernels.wayside import GRAVITY
 from tractionpower.model.dynamics.case import Case, DynamicsScenario
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.dynamics.commands import BAR, brake_target, electric_levels, next_pipe_row, shown_level
-from tractionpower.kernels.chain_tables import ChainState
+from tractionpower.kernels.chain_state import ChainState
 from tractionpower.model.dynamics.case import Case
 
 Setting = tuple[int | None, int | str | None, float | None, float | None]

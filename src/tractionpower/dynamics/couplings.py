@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tractionpower.kernels.chain_tables import COUPLING, GEAR, LINK, POINT
+from tractionpower.kernels.chain_state import LINK
+from tractionpower.kernels.chain_tables import COUPLING, GEAR, POINT
 from tractionpower.kernels.couplings import trace_coupling
 from tractionpower.model.dynamics.coupling import Coupling, Gear, GearPoint, Wedge
 

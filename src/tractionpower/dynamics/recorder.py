@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tractionpower.dynamics.statistics import RainflowCounter, relative_damage
 from tractionpower.errors import UsageError
-from tractionpower.kernels.chain_tables import ChainState
+from tractionpower.kernels.chain_state import ChainState
 from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.results.dynamics_figures import (
     EnergyLedger,

@@ -11,7 +11,7 @@ from tractionpower.dynamics.compile import CompiledChain, compile_chain
 from tractionpower.dynamics.controls import append_control
 from tractionpower.errors import TractionPowerError
 from tractionpower.kernels.chain import advance_chain
-from tractionpower.kernels.chain_tables import (
+from tractionpower.kernels.chain_state import (
     BUFFER_FULL,
     CHAIN_ROW,
     ENDED,

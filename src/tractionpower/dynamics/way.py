@@ -19,6 +19,9 @@ ROECKL = (0.650, 55.0, 0.500, 30.0, 1 / 300.0)
 
 _BEFORE_M = 1.0
 
+_SHARP_M = 1e-6
+"""A transition shorter than this is a sharp break [m]."""
+
 Metres = NDArray[np.float64]
 
 
@@ -87,7 +90,7 @@ def _sum_of(ramps: Sequence[Ramp], edges: Metres) -> tuple[Metres, Metres]:
     value, change = np.zeros(len(edges)), np.zeros(len(edges))
     for ramp in ramps:
         length = ramp.to_m - ramp.from_m
-        if length > 0.0:
+        if length > _SHARP_M:
             value += ramp.change * np.clip((edges - ramp.from_m) / length, 0.0, 1.0)
             change += np.where((edges >= ramp.from_m) & (edges < ramp.to_m), ramp.change / length, 0.0)
         else:

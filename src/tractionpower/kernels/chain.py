@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 from tractionpower.kernels.air_brake import move_brakes
+from tractionpower.kernels.chain_state import BUFFER_FULL, DONE, ENDED, NOT_FINITE
 from tractionpower.kernels.chain_step import leap, runge
-from tractionpower.kernels.chain_tables import BUFFER_FULL, DONE, ENDED, NOT_FINITE, SYMPLECTIC, VARIABLE
+from tractionpower.kernels.chain_tables import SYMPLECTIC, VARIABLE
 from tractionpower.kernels.chain_tally import record, tally
 from tractionpower.kernels.jit import njit
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from tractionpower.kernels.chain_forces import begin_efforts, set_applied, set_efforts, set_resisting, stretch_of
-from tractionpower.kernels.chain_tables import DONE, EULER, RK4, STEP_TOO_SMALL, VARIABLE
+from tractionpower.kernels.chain_state import DONE, STEP_TOO_SMALL
+from tractionpower.kernels.chain_tables import EULER, RK4, VARIABLE
 from tractionpower.kernels.couplings import commit_coupling
 from tractionpower.kernels.jit import njit
 

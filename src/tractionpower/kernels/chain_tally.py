@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tractionpower.kernels.air_brake import reduction_at
 from tractionpower.kernels.chain_forces import set_applied, set_resisting, stretch_of
-from tractionpower.kernels.chain_tables import TURN_N
+from tractionpower.kernels.chain_state import TURN_N
 from tractionpower.kernels.jit import inlined, njit
 
 SPEED_BINS, FORCE_BINS, ACCELERATION_BINS = 0, 1, 2

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.kernels.chain_tables import ChainState
+from tractionpower.kernels.chain_state import ChainState
 
 KN, BAR, KWH, KMH = 1e3, 1e5, 3.6e6, 1.0 / 3.6
 

@@ -41,7 +41,7 @@ def vehicles_table(time_s: Array, names: Sequence[str], rows: Array, start_m: Ar
     names
         Vehicles from the front, length n.
     rows
-        Records of `tractionpower.kernels.chain_tables.VEHICLE_ROW`, shape (rows, n).
+        Records of `tractionpower.kernels.chain_state.VEHICLE_ROW`, shape (rows, n).
     start_m
         Places of the vehicles at the start [m], shape (n,).
     """

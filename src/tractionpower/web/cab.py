@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 
-
 class Session(Protocol):
     """A train that is computed while it is driven."""
 
