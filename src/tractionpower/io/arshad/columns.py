@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tractionpower.errors import InputError, Problem
-from tractionpower.io.arshad.units import UNITS, Dimension, Told, allowed_units, plain_unit, read_quantity
+from tractionpower.io.arshad.units import UNITS, Dimension, Told, plain_unit, read_quantity
 from tractionpower.io.csv_files import read_plain
 from tractionpower.io.documents import Reader
 from tractionpower.io.text_files import Source
@@ -132,14 +132,15 @@ def _unit(source: Source, written: str, text: str | None, column: Column, units:
     if column.dimension is None:
         return
     unit = plain_unit(text or "")
-    if unit not in UNITS[column.dimension]:
-        if column.unit is None or unit:
-            allowed = f"{column.spellings[0]} ({' | '.join(each for each in UNITS[column.dimension] if each)})"
-            found = f"the column {shown(written)} with {f'the unit {shown(text)}' if unit else 'no unit'}"
-            yield source.problem("bad_unit", found, allowed, f"units are {allowed_units(column.dimension)}", 1)
-            return
+    if not unit and column.unit is not None:
         unit = column.unit
-    units[column.name] = unit
+    if unit in UNITS[column.dimension]:
+        units[column.name] = unit
+        return
+    known = " | ".join(each for each in UNITS[column.dimension] if each)
+    allowed = f"{column.spellings[0]} ({known})" if known else column.spellings[0]
+    found = f"the column {shown(written)} with {f'the unit {shown(text)}' if unit else 'no unit'}"
+    yield source.problem("bad_unit", found, allowed, f"units are {known}" if known else "leave the unit out", 1)
 
 
 def _needs_unit(column: Column) -> bool:

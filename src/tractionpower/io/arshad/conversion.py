@@ -35,10 +35,11 @@ def coupling_data(settings: Settings, problems: list[Problem]) -> tuple[dict[str
         },
         "locked_stiffness_kn_per_mm": settings.number("locked"),
         "relaxing_stiffness_kn_per_mm": settings.number("relaxing"),
+        "in_series": int(settings.number("gears")),
     }
     limit_m, half_slack_m = settings.optional("hard_limit"), 0.5 * settings.number("slack")
     if limit_m is not None:
-        draw["stroke_mm"] = 1000.0 * (limit_m - half_slack_m)
+        draw["stroke_mm"] = 1000.0 * (limit_m - half_slack_m) / draw["in_series"]
         if limit_m <= half_slack_m:
             found, allowed = f"{limit_m:g} m", f"above {half_slack_m:g} m, half the slack region"
             problems.append(settings.problem("hard_limit", "out_of_bounds", found, allowed, "raise it, or lower the slack"))
@@ -62,6 +63,7 @@ def _coupling_mark(settings: Settings) -> Mark:
     draw = Mark(settings.label, stages.line, {
         "loading": stages, "wedge": wedge, "locked_stiffness_kn_per_mm": at("locked"),
         "relaxing_stiffness_kn_per_mm": at("relaxing"), "stroke_mm": at("hard_limit"),
+        "in_series": at("gears"),
     })  # fmt: skip
     return Mark(settings.label, 0, {"slack_mm": at("slack"), "draw": draw})
 
@@ -124,12 +126,12 @@ def run_data(settings: Settings, problems: list[Problem]) -> tuple[dict[str, Any
             record = fits
             if least > 1:
                 found = f"{needed} are more than a state vector of {int(rows)} holds"
-                allowed = f"record every {fits:g} s, every {_ordinal(least)} step: {steps // least + 1} rows"
+                allowed = f"record every {fits:g} s, every {_ordinal(least)} step: {-(-steps // least) + 1} rows"
                 told = settings.problem("rows", "state_vector", found, "", f"{allowed}; all steps are computed, none is cut off")
                 problems.append(_warning(told))
-        elif math.floor(duration / record + 1e-9) + 1 > rows:
-            found = f"{math.floor(duration / record + 1e-9) + 1} rows of {record:g} s in a state vector of {int(rows)}"
-            remedy = f"Record every = {fits:g} s fits, and so does State vector size = {math.floor(duration / record + 1e-9) + 1}"
+        elif (recorded := math.ceil(duration / record - 1e-9) + 1) > rows:
+            found = f"{recorded} rows of {record:g} s in a state vector of {int(rows)}"
+            remedy = f"Record every = {fits:g} s fits, and so does State vector size = {recorded}"
             problems.append(settings.problem("record", "state_vector", found, f"at most {int(rows)} rows", remedy))
     if record is not None:
         run["record_every_s"] = record

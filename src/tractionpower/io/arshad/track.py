@@ -81,14 +81,15 @@ def track_data(profile: Profile, start_m: float, length_m: float, curve_n_per_kn
     start_m
         Place of the front on it at the start.
     length_m
-        Length of the train; a part of it that stands before the profile stands on the first grade of it.
+        Length of the train; what of it stands before the profile stands on the first grade of it.
     curve_n_per_kn
         Curve resistance of one degree [N/kN].
     """
     mark = Mark(profile.label)
     grades = [(each, each.from_m, each.to_m) for each in profile.grades]
-    if grades and grades[0][1] <= 0.0 < length_m - start_m:
-        grades[0] = (grades[0][0], start_m - length_m - FOOT_M, grades[0][2])
+    if grades and grades[0][1] <= 0.0:
+        # Twice the train: with its slack, and should it roll back.
+        grades[0] = (grades[0][0], min(0.0, start_m - 2.0 * length_m), grades[0][2])
     lists: dict[str, list[dict[str, Any]]] = {
         "gradients": [{"from_m": a - start_m, "to_m": b - start_m, "permille": each.value} for each, a, b in grades],
         "curves": [

@@ -56,7 +56,7 @@ BARE: dict[Dimension, str] = {
 }  # fmt: skip
 """What a number without a unit is taken for; a dimension that is not here needs one."""
 
-_NUMBER = re.compile(r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>.*)")
+_NUMBER = re.compile(r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>(?![,\d.]).*)")
 
 
 @dataclass(frozen=True, slots=True)
