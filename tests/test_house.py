@@ -24,6 +24,8 @@ COMMANDS = [
     ["size"],
     ["sweep"],
     ["compare"],
+    ["dynamics"],
+    ["dynamics", "run"],
     ["report"],
     ["export"],
     ["import"],
@@ -68,7 +70,15 @@ def test_every_command_has_its_help_tested():
         [sys.executable, "-m", "tractionpower", "--help"], capture_output=True, text=True, check=True, timeout=60
     )
     listed = ran.stdout.split("Commands:")[1]
-    assert set(re.findall(r"^  (\w[\w-]*)", listed, re.MULTILINE)) == {" ".join(command) for command in COMMANDS if command}
+    assert set(re.findall(r"^  (\w[\w-]*)", listed, re.MULTILINE)) == {command[0] for command in COMMANDS if command}
+
+
+def test_every_command_of_dynamics_has_its_help_tested():
+    ran = subprocess.run(
+        [sys.executable, "-m", "tractionpower", "dynamics", "--help"], capture_output=True, text=True, check=True, timeout=60
+    )
+    listed = re.findall(r"^  (\w[\w-]*)", ran.stdout.split("Commands:")[1], re.MULTILINE)
+    assert set(listed) == {command[1] for command in COMMANDS if command[:1] == ["dynamics"] and len(command) > 1}
 
 
 def test_the_package_itself_imports_nothing_heavy():

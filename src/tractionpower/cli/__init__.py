@@ -18,6 +18,7 @@ from tractionpower.cli import (
     compare,
     contingency,
     curves,
+    dynamics,
     export,
     feasibility,
     import_,
@@ -49,6 +50,7 @@ app.command("contingency")(contingency.contingency)
 app.command("size")(size.size)
 app.command("sweep")(sweep.sweep)
 app.command("compare")(compare.compare)
+app.add_typer(dynamics.app)
 app.command("report")(report.report)
 app.command("export")(export.export)
 app.command("import")(import_.import_)

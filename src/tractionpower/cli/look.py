@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -46,18 +47,36 @@ class Look:
         InputError
             With all such names.
         """
+        from tractionpower.errors import InputError
+        from tractionpower.io.report_files import errors_of_figures
+
+        if self.template is not None:
+            self.check_own([run.id for run in scenario.runs])
+            return
+        errors = (
+            [] if loaded.report is None else errors_of_figures(loaded.report, loaded.problems, [run.id for run in scenario.runs])
+        )
+        if errors:
+            raise InputError(loaded.provenance.place(errors))
+
+    def check_own(self, trains: Collection[str] = ()) -> None:
+        """Refuse a template of the options that names figures that there are none of; `trains` have figures of their own.
+
+        Raises
+        ------
+        InputError
+            With all such names.
+        """
         from dataclasses import replace
 
         from tractionpower.errors import InputError
         from tractionpower.io.report_files import errors_of_figures
 
-        own = self.template is not None
-        report, warnings = (self.template, self.unknown) if own else (loaded.report, loaded.problems)
-        errors = [] if report is None else errors_of_figures(report, warnings, [run.id for run in scenario.runs])
-        if own:
-            errors = [problem if problem.place else replace(problem, place=self.file) for problem in errors]
+        if self.template is None:
+            return
+        errors = errors_of_figures(self.template, self.unknown, trains)
         if errors:
-            raise InputError(loaded.provenance.place(errors))
+            raise InputError([problem if problem.place else replace(problem, place=self.file) for problem in errors])
 
     def report(self, folder: Path, of_study: Report | None = None, *, is_new: bool = True, keep: bool = True) -> Report:
         """Return the template of the reports in a folder of results, and keep it there.

@@ -25,9 +25,9 @@ from tractionpower.cli.messages import (
 from tractionpower.cli.progress import cases_bar
 
 if TYPE_CHECKING:
-    from tractionpower.cosimulation.run import Run
     from tractionpower.errors import Problem
     from tractionpower.io.scenario_files import LoadedScenario
+    from tractionpower.model.report import Report
     from tractionpower.model.scenario import Scenario
     from tractionpower.results.store import RunWriter
     from tractionpower.studies.runner.outcomes import CasesRun
@@ -48,18 +48,30 @@ class CasesOutcome(Protocol):
 Ended = TypeVar("Ended", bound=CasesOutcome)
 
 
+class Progressing(Protocol):
+    """A run that goes on."""
+
+    @property
+    def done(self) -> int:
+        """Steps computed so far."""
+
+    @property
+    def steps(self) -> int:
+        """Steps in all."""
+
+
 @dataclass(frozen=True, slots=True)
-class StudyCall:
-    """A study for which a command was called.
+class Call:
+    """A study, or a case of train dynamics, for which a command was called.
 
     Attributes
     ----------
     loaded
-        The study as its files say.
+        What its files say.
     scenario
-        What is computed: the study with what the options change.
+        What is computed: that with what the options change.
     name
-        The study in the results.
+        Its name in the results.
     folder
         Where the results go.
     kind
@@ -68,17 +80,17 @@ class StudyCall:
         How the reports look.
     """
 
-    loaded: LoadedScenario
-    scenario: Scenario
+    loaded: Any
+    scenario: Any
     name: str
     folder: Path
     kind: str = ""
     look: Look = field(default_factory=Look)
 
     @property
-    def cases_folder(self) -> Path:
-        """Where cases leave their whole results, if they are to."""
-        return Path(f"{self.folder}-cases")
+    def template(self) -> Report | None:
+        """Template of the reports that its files name."""
+        return None
 
     def greet(self, more: str = "") -> None:
         """Say what is computed, and where it is from."""
@@ -100,10 +112,12 @@ class StudyCall:
 
     def new_writer(self, *, force: bool, study: str = "") -> RunWriter:
         """Return a writer into the folder; `study` is its name there where that is another one."""
+        from tractionpower.results.kept import input_hash_of
         from tractionpower.results.store import RunWriter
 
         scenario = self.scenario
-        return RunWriter(self.folder, study or self.name, scenario.input_hash, kind=self.kind, force=force, scenario=scenario)
+        digest = input_hash_of(scenario)
+        return RunWriter(self.folder, study or self.name, digest, kind=self.kind, force=force, scenario=scenario)
 
     @contextmanager
     def preparing(self, *, force: bool, study: str = "") -> Iterator[RunWriter]:
@@ -131,7 +145,7 @@ class StudyCall:
         reports: Sequence[Path] = []
         if not no_reports:
             tell("writing figures and workbook")
-            report = self.look.report(self.folder, self.loaded.report)
+            report = self.look.report(self.folder, self.template)
             reports = write_reports(Results.open(self.folder), self.scenario, self.folder, report)
         tell_results(self.folder, reports, writer.beside)
         if reports and remark:
@@ -140,6 +154,24 @@ class StudyCall:
         if no_reports and workbook.exists():
             tell(f"{workbook} is of an earlier run; `tractionpower report {self.folder}` writes it again")
         raise typer.Exit(code)
+
+
+@dataclass(frozen=True, slots=True)
+class StudyCall(Call):
+    """A study for which a command was called."""
+
+    loaded: LoadedScenario
+    scenario: Scenario
+
+    @property
+    def template(self) -> Report | None:
+        """Template of the reports that the study names."""
+        return self.loaded.report
+
+    @property
+    def cases_folder(self) -> Path:
+        """Where cases leave their whole results, if they are to."""
+        return Path(f"{self.folder}-cases")
 
 
 def call_study(
@@ -165,7 +197,7 @@ def _study_name(loaded: LoadedScenario) -> str:
 
 
 @contextmanager
-def keeping(writer: RunWriter, run: Run, keep: Callable[[RunWriter], Path]) -> Iterator[None]:
+def keeping(writer: RunWriter, run: Progressing, keep: Callable[[RunWriter], Path]) -> Iterator[None]:
     """Keep what was computed when Ctrl-C comes while `run` goes on, and say where it is."""
     try:
         yield

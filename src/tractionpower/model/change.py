@@ -11,11 +11,12 @@ import difflib
 import json
 import re
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from tractionpower.errors import InputError, Problem
+from tractionpower.model.base import Declaration
 from tractionpower.model.library import KEYS, Library
 from tractionpower.model.scenario import Scenario
 
@@ -26,6 +27,8 @@ _WORDS = {"null": None, "~": None, "true": True, "false": False}
 _INTEGER = re.compile(r"[-+]?\d+")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _SHOWN = 12
+
+Changed = TypeVar("Changed", bound=Declaration)
 
 ALL, ADDED = "[*]", "[+]"
 """Steps of a path: every item of a list, one more item."""
@@ -53,8 +56,8 @@ def apply_change(scenario: Scenario, change: str) -> Scenario:
     return apply_changes(scenario, [change])
 
 
-def apply_changes(scenario: Scenario, changes: Iterable[str], library: Library | None = None) -> Scenario:
-    """Return `scenario` with all `changes` applied in their order and validated once at the end.
+def apply_changes(scenario: Changed, changes: Iterable[str], library: Library | None = None) -> Changed:
+    """Return `scenario`, or a case of train dynamics, with all `changes` applied in their order and validated once at the end.
 
     Changes that only hold together, such as taking `power_kw` from a load and giving it `current_a`, go in one call.
     See `apply_change` for their form. A scenario holds the conductors, duty classes and rectifier units that its supply
@@ -77,7 +80,7 @@ def apply_changes(scenario: Scenario, changes: Iterable[str], library: Library |
     if library is not None:
         _add_rows(plain, library)
     try:
-        return Scenario.model_validate(plain)
+        return type(scenario).model_validate(plain)
     except ValidationError as error:
         raise InputError(_complaints(plain, error)) from error
 
