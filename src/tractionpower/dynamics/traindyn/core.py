@@ -146,8 +146,12 @@ class TrainDynamics:
         for train in self.trains:
             callback(train)
 
-    def run(self, env: simpy.Environment | None = None, period_s: float = 1.0) -> simpy.Process:
+    def run(
+        self, env: simpy.Environment | None = None, period_s: float = 1.0, then: Callable[[], object] | None = None
+    ) -> simpy.Process:
         """Start to calculate all trains every `period_s` [s] of a SimPy environment, and return that process.
+
+        `then` is called behind each calculation, for example to draw or record the trains.
 
         Raises
         ------
@@ -161,7 +165,7 @@ class TrainDynamics:
             raise UsageError(f"a sampling period of {period_s} s; it must be above 0")
         self._env = env
         self._time_s = max(self._time_s, float(env.now))
-        return env.process(self._scan(env, float(period_s)))
+        return env.process(self._scan(env, float(period_s), then))
 
     def when(self, condition: Callable[[], bool]) -> simpy.Event:
         """Return a SimPy event that happens at the first sample at which a condition holds: ``yield core.when(...)``.
@@ -179,10 +183,14 @@ class TrainDynamics:
         self._awaited.append((condition, event))
         return event
 
-    def _scan(self, env: simpy.Environment, period_s: float) -> Generator[simpy.Event, Any, None]:
+    def _scan(
+        self, env: simpy.Environment, period_s: float, then: Callable[[], object] | None
+    ) -> Generator[simpy.Event, Any, None]:
         first, count = float(env.now), 0
         while True:
             self.calculate_speeds(float(env.now))
+            if then is not None:
+                then()
             happened = [(condition, event) for condition, event in self._awaited if condition()]
             self._awaited = [each for each in self._awaited if each not in happened]
             for _, event in happened:
