@@ -149,29 +149,18 @@ class StationsModel:
 
     def _through(self, train: DynTrain, arrival: Arrival, k: int, section: Request) -> Generator[simpy.Event, Any, Request]:
         """Let a train come into a station, stop or pass, and go on; return its hold on the piece of line behind."""
-        env, station, layout, length = self.env, self.case.stations[k], self.layout, arrival.kind.length_m
-        track = self._choose(station, k, arrival.chances[k])
-        place = self._tracks[k][track].request()
-        asked = env.now
-        if not place.triggered:
-            train.stop(at_m=station.from_m - HOME_M)
-            yield place
-            train.accelerate(speed_kmh=self.case.speed_kmh)
-        name = layout.tracks[k][track].name
-        self.recorder.tell(env.now, train, "track_given", name, station.id, env.now - asked)
-        train.extend_route(layout.tracks[k][track], layout.lines[k + 1])
-        ahead = None if station.stops else self._sections[k + 1].request()
+        env, station, length = self.env, self.case.stations[k], arrival.kind.length_m
+        track, place = yield from self._get_track(train, k, arrival.chances[k])
         speed = self._speed_kmh(station, track)
         if speed < self.case.speed_kmh:
             train.accelerate(speed_kmh=speed, at_m=station.from_m)
-            yield self.core.when(lambda: train.place_m >= station.from_m)
-        if ahead is None or not ahead.triggered:
-            train.stop(at_m=station.to_m - SHORT_M)
+        ahead = None if station.stops else self._sections[k + 1].request()
+        yield from self._come_in(train, station, speed, (station.from_m + length, ahead))
         yield self.core.when(lambda: train.place_m >= station.from_m + length)
         self._sections[k].release(section)
         if ahead is None:
             yield self.core.when(lambda: train.is_standing)
-            self.recorder.tell(train.stood_since_s, train, "arrival", name, station.id)
+            self.recorder.tell(train.stood_since_s, train, "arrival", self._name(k, track), station.id)
             yield env.timeout(max(train.stood_since_s + station.dwell_s - env.now, 0.0))
             ahead = self._sections[k + 1].request()
         asked = env.now
@@ -180,14 +169,46 @@ class StationsModel:
         train.accelerate(speed_kmh=speed)
         waited = env.now - asked
         if train.is_standing:
-            self.recorder.tell(env.now, train, "departure", name, station.id, waited)
+            self.recorder.tell(env.now, train, "departure", self._name(k, track), station.id, waited)
         yield self.core.when(lambda: train.place_m >= station.to_m)
         if not station.stops:
-            self.recorder.tell(env.now, train, "passing", name, station.id, waited)
+            self.recorder.tell(env.now, train, "passing", self._name(k, track), station.id)
         yield self.core.when(lambda: train.place_m >= station.to_m + length)
         self._tracks[k][track].release(place)
         train.accelerate(speed_kmh=self.case.speed_kmh)
         return ahead
+
+    def _get_track(self, train: DynTrain, k: int, chance: float) -> Generator[simpy.Event, Any, tuple[str, Request]]:
+        """Get a track of a station for a train, which stops before the station if it has to wait; return it with its hold."""
+        station, asked = self.case.stations[k], self.env.now
+        track = self._choose(station, k, chance)
+        place = self._tracks[k][track].request()
+        if not place.triggered:
+            train.stop(at_m=station.from_m - HOME_M)
+            yield place
+            train.accelerate(speed_kmh=self.case.speed_kmh)
+        self.recorder.tell(self.env.now, train, "track_given", self._name(k, track), station.id, self.env.now - asked)
+        train.extend_route(self.layout.tracks[k][track], self.layout.lines[k + 1])
+        return track, place
+
+    def _come_in(self, train: DynTrain, station: CaseStation, speed_kmh: float, until: tuple[float, Request | None]) -> Step:
+        """Let a train brake towards the end of its track, unless it passes and the line ahead is free.
+
+        If that gets free before it has come up to a place, it goes on; `until` are that place [m] and its claim to the line.
+        """
+        inside_m, ahead = until
+        if speed_kmh < self.case.speed_kmh:
+            yield self.core.when(lambda: train.place_m >= station.from_m)
+        if ahead is not None and ahead.triggered:
+            return
+        train.stop(at_m=station.to_m - SHORT_M)
+        if ahead is not None:
+            yield self.core.when(lambda: ahead.triggered or train.place_m >= inside_m)
+            if ahead.triggered:
+                train.accelerate(speed_kmh=speed_kmh)
+
+    def _name(self, k: int, track: str) -> str:
+        return self.layout.tracks[k][track].name
 
     def _choose(self, station: CaseStation, k: int, chance: float) -> str:
         """Return the track that a train gets: one of those that are free, or if none is one that it waits for."""

@@ -1,0 +1,1 @@
+"""Figures of trains as point masses on a line with stations."""
