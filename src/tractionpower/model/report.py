@@ -28,6 +28,8 @@ SHEETS = (
     "Energy", "Train energy", "Losses", "Key figures", "Charts",
     "Extract trains", "Extract worst train", "Voltage profile", "Voltage histogram", "Extract loads", "Extract substation",
     "Load duration", "Events",
+    "Coupling forces", "Stops", "Course of the train", "Course of couplings", "Distributions", "Rainflow",
+    "Inputs case", "Inputs couplings", "Inputs track", "Inputs commands",
     "Inputs study", "Inputs line", "Inputs supply", "Inputs equipment", "Inputs conductors", "Inputs stock", "Inputs trains",
     "Inputs vehicles", "Inputs timetable", "Inputs limits",
     "Model", "Not covered", "Solver evidence", "Definitions", "Columns", "Errors", "Values",

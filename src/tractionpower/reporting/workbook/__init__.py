@@ -5,14 +5,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.texts import language
 from tractionpower.results.results import Results
 
 
-def write_workbook(results: Results, scenario: Scenario, path: Path, report: Report | None = None) -> Path:
-    """Write the workbook of a run, or of a study of many, and return where it is.
+def write_workbook(results: Results, scenario: Scenario | DynamicsScenario, path: Path, report: Report | None = None) -> Path:
+    """Write the workbook of a run, of a study of many or of train dynamics, and return where it is.
 
     The file gets its name when it is complete. Where another program holds the earlier one open, the new one stands
     beside it, with ``.new`` before its suffix.
@@ -28,6 +29,7 @@ def write_workbook(results: Results, scenario: Scenario, path: Path, report: Rep
     report
         The template; None: English, all sheets.
     """
+    from tractionpower.reporting.workbook.dynamics import book as dynamics_book
     from tractionpower.reporting.workbook.frame.saving import save_as
     from tractionpower.reporting.workbook.outages import outage_book
     from tractionpower.reporting.workbook.run import book
@@ -37,4 +39,6 @@ def write_workbook(results: Results, scenario: Scenario, path: Path, report: Rep
     builders = {"contingency": outage_book.build, "sweep": sweep.build, "compare": compare.build}
     build = builders.get(str(results.run.get("kind") or ""), book.build)
     with language(report.language):
+        if isinstance(scenario, DynamicsScenario):
+            return save_as(dynamics_book.build(results, scenario, report), path)
         return save_as(build(results, scenario, report), path)

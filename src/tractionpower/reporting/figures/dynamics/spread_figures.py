@@ -14,15 +14,13 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from numpy.typing import NDArray
 
 from tractionpower.reporting.facts.chain_data import ChainData
+from tractionpower.reporting.facts.spread import LEAST_SHARE, joint_of, rows_of
 from tractionpower.reporting.figures.base.style import BLUE, INK, PAGE, SMALLEST, STYLE, new_figure
 from tractionpower.reporting.figures.dynamics.panels import LINES, coupling_told, label, titled
 from tractionpower.reporting.figures.supply.panels import legend_below
 from tractionpower.reporting.texts import number, tr
 
 Array = NDArray[Any]
-
-LEAST_SHARE = 1e-6
-"""A bin in which a smaller part of the time was spent is empty."""
 
 MOST_NUMBERS = 14
 """Columns of a joint distribution whose bins have their numbers written in them."""
@@ -47,43 +45,22 @@ def brake_and_speed(data: ChainData) -> Figure | None:
     )
 
 
-def rows_of(data: ChainData, which: str) -> pd.DataFrame:
-    """Return the bins of one distribution in which time was spent, ends that are open closed by the width of their neighbour."""
-    rows = data.table("distributions")
-    if rows.empty:
-        return rows
-    own = rows[rows["of"].astype(str) == which].copy()
-    width = float((own["highest"] - own["lowest"]).median())
-    own["from_"] = own["lowest"].fillna(own["highest"] - width)
-    own["to"] = own["highest"].fillna(own["lowest"] + width)
-    return own
-
-
 def _joint(data: ChainData, which: str, words: str, title: str) -> Figure | None:
-    rows = rows_of(data, which)
-    used = rows[rows["frequency"] > LEAST_SHARE] if len(rows) else rows
-    if used.empty:
+    joint = joint_of(data, which)
+    if joint is None:
         return None
-    per = data.units["speed"].per
-    low, high = float(used["from_"].min()), float(used["to"].max())
-    rows = rows[(rows["from_"] >= low - 1e-9) & (rows["to"] <= high + 1e-9)]
-    begins = np.unique(rows["from_"].to_numpy(float))
-    levels = np.arange(0, int(used["level"].max()) + 1)
-    share = np.full((len(levels), len(begins)), np.nan)
-    kept = rows[rows["level"].isin(levels)]
-    share[kept["level"].to_numpy(int), np.searchsorted(begins, kept["from_"].to_numpy(float))] = kept["frequency"].to_numpy(float)
-    share[share <= LEAST_SHARE] = np.nan
+    levels, classes = joint.share.shape
     with mpl.rc_context(STYLE | {"axes.grid": False}):
-        figure = new_figure(PAGE, min(1.7 + 0.24 * max(len(levels), 5), 5.6))
+        figure = new_figure(PAGE, min(1.7 + 0.24 * max(levels, 5), 5.6))
         axes = figure.add_subplot()
-        edges = np.append(begins, high) * per
-        mesh = axes.pcolormesh(edges, np.append(levels, levels[-1] + 1) - 0.5, 100.0 * share, cmap=SHADES, vmin=0.0,
+        edges = joint.edges * data.units["speed"].per
+        mesh = axes.pcolormesh(edges, np.arange(levels + 1) - 0.5, 100.0 * joint.share, cmap=SHADES, vmin=0.0,
                                edgecolors="white", linewidth=0.4)  # fmt: skip
         bar = figure.colorbar(mesh, ax=axes, pad=0.015, fraction=0.055)
         bar.set_label(tr("share of the time [%]"), fontsize=SMALLEST)
         bar.ax.tick_params(labelsize=SMALLEST)
-        if len(begins) <= MOST_NUMBERS:
-            _write_shares(axes, edges, share)
+        if classes <= MOST_NUMBERS:
+            _write_shares(axes, edges, joint.share)
         axes.yaxis.set_major_locator(MaxNLocator(integer=True))
         axes.set_ylabel(words)
         axes.set_xlabel(label(data, "speed", tr("speed")))
@@ -122,7 +99,7 @@ def _histogram(data: ChainData, which: str, quantity: str, words: str, title: st
     with mpl.rc_context(STYLE):
         figure = new_figure(PAGE, 3.3)
         axes = figure.add_subplot()
-        low, wide = used["from_"].to_numpy(float) * per, (used["to"] - used["from_"]).to_numpy(float) * per
+        low, wide = used["begin"].to_numpy(float) * per, (used["end"] - used["begin"]).to_numpy(float) * per
         style: Any = {"align": "edge", "color": BLUE, "edgecolor": "white", "linewidth": 0.5, "zorder": 2}
         axes.bar(low, 100.0 * used["frequency"].to_numpy(float), wide, **style)
         span = max(float((low + wide).max() - low.min()), 8.0 * float(wide.max()))

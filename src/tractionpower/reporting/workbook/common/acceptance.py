@@ -55,6 +55,9 @@ BY_LIMIT = Words(MET, VIOLATED, OPEN)
 SMALL_LIMIT = 10.0
 """A limit below this is shown with two digits."""
 
+MOST_OF_NAME = 200
+"""Characters of the name of a limit in the name of its cell; Excel takes 255."""
+
 _SENSES = {"at_least": mark("not below"), "at_most": mark("not above")}
 
 _COLUMNS = (
@@ -147,7 +150,7 @@ def add(book: Book) -> None:
 def accepted_rows(book: Book) -> list[Accepted]:
     """Return the rows: verdicts of the run, a sheet's row in the place of each that it tells, then those of sheets alone."""
     own = list(book.acceptance)
-    rows = [_taken(own, row) for row in map(accepted_of, book.facts.verdicts)]
+    rows = [_taken(own, row) for row in map(accepted_of, book.computed.verdicts)]
     rows += own
     order = {name: number for number, name in enumerate(dict.fromkeys(map(group_of, rows)))}
     return sorted(rows, key=lambda row: order[group_of(row)])
@@ -208,7 +211,7 @@ def cell_names(rows: Iterable[Accepted]) -> list[str]:
     taken: dict[str, Any] = {}
     for row in rows:
         lasts = "_s" if row.limit_name.startswith("touch_") and row.unit == "s" else ""  # the limit of that name is a voltage
-        base = name = "limit_" + re.sub(r"[^A-Za-z0-9_]", "_", row.limit_name) + lasts
+        base = name = "limit_" + re.sub(r"[^A-Za-z0-9_]", "_", row.limit_name[:MOST_OF_NAME]) + lasts
         count = 1
         while taken.setdefault(name, (row.limit_value, row.unit)) != (row.limit_value, row.unit):
             count += 1

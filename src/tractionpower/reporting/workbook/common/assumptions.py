@@ -19,14 +19,14 @@ from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts, limit_in_words
 from tractionpower.reporting.workbook.frame.page import Column, heading_of
 
-_COLUMNS = (
+COLUMNS = (
     Column("no.", "0"),
     Column("of", "beside", widest=22),
     Column("assumption", "beside", widest=84),
     Column("where it acts", "beside", widest=40),
     Column("source, status", "beside", widest=48),
 )
-_DEFAULTS = (
+DEFAULTS = (
     Column("of", widest=34),
     Column("quantity", widest=40),
     Column("value", "general"),
@@ -75,14 +75,14 @@ def add(book: Book) -> None:
         " out."
         " Numbers that the study leaves to the program are on sheet Defaults."
     )
-    page.table(_COLUMNS, [(k, *row) for k, row in enumerate(rows, 1)], frozen=True)
+    page.table(COLUMNS, [(k, *row) for k, row in enumerate(rows, 1)], frozen=True)
     defaults = list(_defaults(facts))
     if defaults:
         page = book.page("Defaults", "Defaults of the program that act in this run")
         page.note(
             "Numbers that the study leaves to the program, or gives as it would take them. Held by: how many have this value."
         )
-        page.table(_DEFAULTS, defaults, frozen=True)
+        page.table(DEFAULTS, defaults, frozen=True)
 
 
 def _method(facts: Facts) -> Iterator[Assumption]:
@@ -263,10 +263,10 @@ def _defaults(facts: Facts) -> Iterator[tuple[Any, ...]]:
     if coasts.is_default and scenario.runs:
         yield words_of("study"), heading_of(coasts.name), coasts.value, "", recorded(study.description or ""), ""
     for title, parts in roots:
-        yield from _defaults_of(title, parts)
+        yield from defaults_of(title, parts)
 
 
-def _defaults_of(title: str, parts: Iterable[BaseModel], before: str = "") -> Iterator[tuple[Any, ...]]:
+def defaults_of(title: str, parts: Iterable[BaseModel], before: str = "") -> Iterator[tuple[Any, ...]]:
     """Yield the rows of equal parts of the inputs, then those of their inner parts; bounds of searches change no figure."""
     found: dict[str, list[Declared]] = {}
     inner: dict[str, list[BaseModel]] = {}
@@ -287,7 +287,7 @@ def _defaults_of(title: str, parts: Iterable[BaseModel], before: str = "") -> It
             share = tr("{count} of {all}", count=count, all=len(fields)) if len(fields) > 1 else ""
             yield of, heading_of(name), first.default, share, recorded(first.meaning), recorded(first.source)
     for name, values in inner.items():
-        yield from _defaults_of(name, values, f"{of}: ")
+        yield from defaults_of(name, values, f"{of}: ")
 
 
 def _acts(part: BaseModel, name: str) -> bool:

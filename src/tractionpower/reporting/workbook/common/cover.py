@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 from openpyxl.drawing.image import Image
 from openpyxl.drawing.spreadsheet_drawing import AnchorMarker, OneCellAnchor
@@ -30,7 +31,7 @@ from tractionpower.reporting.workbook.common.cover_texts import (
 from tractionpower.reporting.workbook.common.cover_verdicts import write_headline, write_verdicts
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import shorten
-from tractionpower.reporting.workbook.frame.facts import Facts
+from tractionpower.reporting.workbook.frame.facts import Computed
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import LINE_POINTS, Page
 
@@ -67,10 +68,12 @@ KINDS = {
     "contingency": mark("Outages of the traction power supply"),
     "sweep": mark("Variants of a study"),
     "compare": mark("Comparison of results"),
+    "dynamics": mark("Train dynamics: the train as many vehicles"),
 }
 """What a report is, by the kind in ``run.json``."""
 
-Group = Callable[[Facts], Iterable[Said]]
+Group = Callable[[Any], Iterable[Said]]
+"""Takes the facts of the book, which are of its kind."""
 
 
 def fill_in(book: Book, page: Page, groups: Sequence[Group] = ()) -> None:
@@ -79,8 +82,9 @@ def fill_in(book: Book, page: Page, groups: Sequence[Group] = ()) -> None:
     The first of `groups` tells what was computed, the last how far to trust it, those between what was found beside the limits;
     none: what they tell of a run.
     """
-    head, *found, trust = groups or (run_head, run_verdicts, run_trust)
-    facts = book.facts
+    usual: Sequence[Group] = (run_head, run_verdicts, run_trust)
+    head, *found, trust = groups or usual
+    facts = book.computed
     page.widen(*WIDTHS)
     book.print_on_one_page(page)
     _title(book, page)
@@ -148,7 +152,7 @@ def _title(book: Book, page: Page) -> None:
     kind = KINDS.get(str(subject.run.get("kind") or ""), "")
     if book.subject.run.get("feasibility"):
         kind = mark("Feasibility of a timetable")
-    name = subject.name if isinstance(subject, Facts) else subject.study
+    name = subject.name if isinstance(subject, Computed) else subject.study
     study = shorten(name, TITLE_LENGTH) if report.document.title else ""
     page.put(2, 1, " · ".join(part for part in (tr(kind), study) if part), "subtitle")
     if report.logo:

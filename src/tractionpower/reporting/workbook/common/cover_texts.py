@@ -8,7 +8,7 @@ from typing import Any
 from tractionpower.model.base import format_time
 from tractionpower.reporting.texts import decimal, mark, number, recorded, tr, trn
 from tractionpower.reporting.workbook.feasibility.feasibility import verdict_in_words
-from tractionpower.reporting.workbook.frame.facts import STATES, Facts
+from tractionpower.reporting.workbook.frame.facts import STATES, Computed, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.sizing.ratings import BANNER as RATINGS
 from tractionpower.reporting.workbook.sizing.ratings import one_for_each, ratings_in_words
@@ -47,7 +47,7 @@ def run_head(facts: Facts) -> Iterator[Said]:
     yield tr("Coupling"), _coupling(facts), "wrapped"
 
 
-def judged_elsewhere(facts: Facts) -> str:
+def judged_elsewhere(facts: Computed) -> str:
     """Return what there is to say of the verdicts in the report of a part."""
     counts = facts.run.get("whole_run") or {}
     words = tr("Limits are judged for the whole run, not for a part of it.")

@@ -43,6 +43,7 @@ KNOWN = {
     "recalled": mark("recalled"),
     "user": mark("given by the user"),
     "derived": mark("derived"),
+    "assumed": mark("assumed"),
 }
 """How the value of a limit is known, in few words."""
 

@@ -39,6 +39,9 @@ OF = {
     "voltage-limiting device ": mark("each voltage-limiting device"),
     "supply point ": mark("each supply point"),
     "case ": mark("each case"),
+    "coupling ": mark("the worst coupling"),
+    "vehicle ": mark("the worst vehicle"),
+    "stop ": mark("each stop"),
 }
 """What a figure is told of, by how its place begins."""
 
@@ -91,7 +94,7 @@ def _figures(book: Book) -> Iterator[tuple[str, ...]]:
     """Yield every key figure once for each definition that it has."""
     places: dict[tuple[str, str], list[str]] = {}
     units: dict[tuple[str, str], str] = {}
-    for figure in book.facts.results.key_figures:
+    for figure in book.computed.results.key_figures:
         key = (figure["name"], figure.get("definition", ""))
         places.setdefault(key, []).append(figure.get("place") or "")
         units[key] = figure.get("unit", "")
@@ -106,7 +109,7 @@ def _figures(book: Book) -> Iterator[tuple[str, ...]]:
 
 def _of_many(book: Book) -> Iterator[tuple[str, str, str]]:
     """Yield name, definition and place of the figures of a comparison, and of those of cases."""
-    results, compared = book.facts.results, book.facts.run.get("compare") or {}
+    results, compared = book.computed.results, book.computed.run.get("compare") or {}
     told: dict[str, str] = compared.get("definitions", {})
     meanings = {column.quantity.name: column.quantity.meaning for column in TABLES["cases"] if column.quantity.name in FIGURES}
     if compared and "compare" in results.tables:
@@ -133,7 +136,7 @@ def _source(name: str) -> str:
 
 
 def _columns(book: Book) -> Iterator[tuple[str, ...]]:
-    present = set(book.facts.results.tables)
+    present = set(book.computed.results.tables)
     for table, columns in TABLES.items():
         for column in columns if table in present else ():
             quantity = column.quantity

@@ -12,7 +12,7 @@ from tractionpower.model.base import format_time
 from tractionpower.movement.ledgers import ELECTRIC_SHARE, GIVEN, MECHANICAL_SHARE
 from tractionpower.reporting.texts import mark, number, recorded, tr, trn
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.facts import Facts
+from tractionpower.reporting.workbook.frame.facts import Computed, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 
@@ -122,8 +122,7 @@ def add(book: Book) -> None:
     _flagged(page, facts)
     _cases(page, facts)
     _folders(page, facts)
-    _made_with(page, facts)
-    _files(page, facts)
+    add_origin(page, facts)
 
 
 def _say_status(page: Page, facts: Facts) -> None:
@@ -308,7 +307,13 @@ def _folder(entry: dict[str, Any]) -> tuple[Any, ...]:
     )  # fmt: skip
 
 
-def _made_with(page: Page, facts: Facts) -> None:
+def add_origin(page: Page, facts: Computed) -> None:
+    """Write how it was computed, and which files the book was made from."""
+    _made_with(page, facts)
+    _files(page, facts)
+
+
+def _made_with(page: Page, facts: Computed) -> None:
     run = facts.run
     page.section("How it was computed")
     words = {
@@ -322,7 +327,7 @@ def _made_with(page: Page, facts: Facts) -> None:
     _values(page, [*rows, *((tr("version of {package}", package=name), version, "", "any") for name, version in versions)])
 
 
-def _files(page: Page, facts: Facts) -> None:
+def _files(page: Page, facts: Computed) -> None:
     """List the files of the results with size and hash, so that the book can be matched with them."""
     files = facts.run.get("files") or {}
     page.section("Files that this workbook was made from")

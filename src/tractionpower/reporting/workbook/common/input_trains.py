@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from tractionpower.model.dynamics.coupling import Coupling
 from tractionpower.model.quantity import REQUIRED
 from tractionpower.model.timetable import Timetable, TrainRun
 from tractionpower.model.vehicle import Train, Vehicle
@@ -59,11 +60,21 @@ def _stock(book: Book) -> None:
     needed = [vehicles[name] for name in sorted({part.id for train in used.values() for part in train.vehicles})]
     page = book.page("Inputs vehicles", "Inputs as used: vehicles")
     page.note("Default: what the program takes where a file leaves a quantity out. Sources are on sheet Inputs study.")
-    tables = -(-len(needed) // MOST_BESIDE)
+    add_side_by_side(page, needed)
+    add_curves(page, needed)
+
+
+def add_side_by_side(page: Page, things: Sequence[Vehicle | Coupling]) -> None:
+    """Write all figures of vehicles or couplings, some beside each other."""
+    tables = -(-len(things) // MOST_BESIDE)
     for k in range(tables):  # as many beside each other in every table
-        _side_by_side(page, needed[k * len(needed) // tables : (k + 1) * len(needed) // tables], alone=tables == 1)
+        _side_by_side(page, things[k * len(things) // tables : (k + 1) * len(things) // tables], alone=tables == 1)
+
+
+def add_curves(page: Page, vehicles: Sequence[Vehicle]) -> None:
+    """Write the points of the curves of vehicles."""
     curves: dict[tuple[str, type], list[tuple[str, BaseModel]]] = {}
-    for vehicle in needed:
+    for vehicle in vehicles:
         for name, points in _curves(vehicle):
             curves.setdefault((name, type(points[0])), []).extend((vehicle.id, point) for point in points)
     for (name, _), rows in curves.items():
@@ -90,7 +101,7 @@ def _train_row(train: Train, vehicles: dict[str, Vehicle]) -> list[Any]:
     ]
 
 
-def _side_by_side(page: Page, vehicles: Sequence[Vehicle], *, alone: bool) -> None:
+def _side_by_side(page: Page, vehicles: Sequence[Vehicle | Coupling], *, alone: bool) -> None:
     """Write the figures of some vehicles, a column for each, with the default of the program beside them."""
     rows: dict[str, list[Any]] = {}
     defaults: dict[str, Any] = {}

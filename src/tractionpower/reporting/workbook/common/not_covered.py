@@ -11,7 +11,7 @@ from tractionpower.reporting.workbook.frame.page import Column
 
 Row = tuple[str, str, str]
 
-_COLUMNS = (
+COLUMNS = (
     Column("no.", "0"),
     Column("subject", widest=34),
     Column("not covered", "beside", widest=80),
@@ -24,7 +24,7 @@ def add(book: Book) -> None:
     page = book.page("Not covered", "What the model does not cover")
     page.note("No figure of this workbook tells anything about what stands here; where it matters it needs a study of its own.")
     rows = [*_electric(), *_equipment(book.facts), *_earth(book.facts), *_trains(book.facts)]
-    page.table(_COLUMNS, [(number, *row) for number, row in enumerate(rows, 1)], frozen=True)
+    page.table(COLUMNS, [(number, *row) for number, row in enumerate(rows, 1)], frozen=True)
 
 
 def _electric() -> Iterator[Row]:

@@ -10,9 +10,8 @@ from openpyxl import Workbook
 from openpyxl.utils import quote_sheetname
 
 from tractionpower.model.report import Report
-from tractionpower.reporting.texts import tr
 from tractionpower.reporting.workbook.frame.cells import Styles, shorten
-from tractionpower.reporting.workbook.frame.facts import Facts, Subject
+from tractionpower.reporting.workbook.frame.facts import Computed, Facts, Subject
 from tractionpower.reporting.workbook.frame.formulas import Formula, Names
 from tractionpower.reporting.workbook.frame.page import Page
 from tractionpower.reporting.workbook.frame.rules import Rule
@@ -60,6 +59,13 @@ class Book:
         """What the sheets tell of a run and its scenario."""
         if not isinstance(self.subject, Facts):
             raise TypeError("this workbook is about results without a scenario")
+        return self.subject
+
+    @property
+    def computed(self) -> Computed:
+        """What the sheets tell of a computation, whatever was computed."""
+        if not isinstance(self.subject, Computed):
+            raise TypeError("this workbook is about no computation")
         return self.subject
 
     def page(self, name: str, title: str) -> Page:
@@ -123,7 +129,7 @@ class Book:
         subject, document, properties = self.subject, self.report.document, self.workbook.properties
         properties.title = shorten(document.title or subject.study, TITLE_LENGTH)
         properties.creator = shorten(document.made_by or self.report.company, TITLE_LENGTH) or "tractionpower"
-        properties.subject = tr("Co-simulation of traction power supply and train movement")
+        properties.subject = subject.about
         properties.description = f"input hash {subject.input_hash}"
         properties.version, properties.language = shorten(document.revision, 40) or None, self.report.language
 

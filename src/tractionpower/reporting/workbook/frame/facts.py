@@ -22,6 +22,7 @@ KNOWN_AS = {
     "recalled": mark("recalled from memory"),
     "user": mark("given by the user"),
     "derived": mark("derived by the program from its source"),
+    "assumed": mark("assumed"),
 }
 """How the value of a limit is known, by its status."""
 
@@ -64,19 +65,23 @@ class Subject:
         """Hash of the inputs."""
         return str(self.run.get("input_hash", ""))
 
+    @property
+    def about(self) -> str:
+        """What the document is about, for its properties."""
+        return tr("Co-simulation of traction power supply and train movement")
 
-class Facts(Subject):
-    """A run and its scenario, as the sheets ask for them."""
 
-    def __init__(self, results: Results, scenario: Scenario) -> None:
+class Computed(Subject):
+    """Results of one computation, whatever was computed: verdicts, tables, key figures by place."""
+
+    def __init__(self, results: Results) -> None:
         super().__init__(results)
-        self.scenario = scenario
         self._tables: dict[str, pd.DataFrame] = {}
 
     @property
     def name(self) -> str:
-        """Name of the study, whatever part of it this is."""
-        return self.scenario.name or super().study
+        """Name of what was computed, whatever part of it this is."""
+        return super().study
 
     @property
     def part(self) -> str:
@@ -84,33 +89,11 @@ class Facts(Subject):
         return selection_words(self.run)
 
     @property
-    def study(self) -> str:
-        """Name of the study, and of what part of it."""
-        return f"{self.name} ({self.part})" if self.part else self.name
-
-    @property
-    def input_hash(self) -> str:
-        """Hash of the inputs."""
-        return super().input_hash or self.scenario.input_hash
-
-    @property
-    def feasibility(self) -> dict[str, Any] | None:
-        """The verdict on the timetable, if it was judged."""
-        told: dict[str, Any] | None = self.run.get("feasibility")
-        return told
-
-    @property
     def verdicts(self) -> list[dict[str, Any]]:
         """Verdicts of the run, each with all its keys."""
         keys = ("name", "value", "unit", "place", "time", "limit", "limit_value", "source", "status", "sense", "met")
         found = [{key: verdict.get(key) for key in keys} for verdict in self.run.get("verdicts", [])]
         return [verdict | {"met": None if verdict["met"] is None else bool(verdict["met"])} for verdict in found]
-
-    @property
-    def ledgers(self) -> dict[str, dict[str, Any]]:
-        """Ledgers of the run; those of trains only where there are trains."""
-        told: dict[str, dict[str, Any]] = self.run.get("ledgers", {})
-        return {name: ledger for name, ledger in told.items() if name == "electric" or ledger.get("train", "")}
 
     def table(self, name: str, columns: tuple[str, ...] | None = None) -> pd.DataFrame:
         """Return a table with all or some of its columns; an empty one where the run has none.
@@ -139,6 +122,41 @@ class Facts(Subject):
     def when(self, place: str, name: str) -> str:
         """Return the time of a key figure as it is written."""
         return str(self.places.get(place, {}).get(name, {}).get("time") or "")
+
+
+class Facts(Computed):
+    """A run and its scenario, as the sheets ask for them."""
+
+    def __init__(self, results: Results, scenario: Scenario) -> None:
+        super().__init__(results)
+        self.scenario = scenario
+
+    @property
+    def name(self) -> str:
+        """Name of the study, whatever part of it this is."""
+        return self.scenario.name or super().name
+
+    @property
+    def study(self) -> str:
+        """Name of the study, and of what part of it."""
+        return f"{self.name} ({self.part})" if self.part else self.name
+
+    @property
+    def input_hash(self) -> str:
+        """Hash of the inputs."""
+        return super().input_hash or self.scenario.input_hash
+
+    @property
+    def feasibility(self) -> dict[str, Any] | None:
+        """The verdict on the timetable, if it was judged."""
+        told: dict[str, Any] | None = self.run.get("feasibility")
+        return told
+
+    @property
+    def ledgers(self) -> dict[str, dict[str, Any]]:
+        """Ledgers of the run; those of trains only where there are trains."""
+        told: dict[str, dict[str, Any]] = self.run.get("ledgers", {})
+        return {name: ledger for name, ledger in told.items() if name == "electric" or ledger.get("train", "")}
 
     def limit(self, name: str) -> Limit | None:
         """Return a limit of the study's system."""
