@@ -68,10 +68,11 @@ def _train(book: Book, data: ChainData, drawn: Drawn) -> None:
     page.note(
         tr(
             "Extract: {shown} of {all} recorded rows, evenly spread; tables vehicles and controls have all. Forces are sums"
-            " over the
-        ),
-           " train.", shown=len(kept), all=count)
-    )  # fmt: skip
+            " over the train.",
+            shown=len(kept),
+            all=count,
+        )
+    )
     columns, values = [Column(TIME, "0.00", key="time")], [data.times[kept]]
 
     def take(heading: str, style: str, key: str, series: Array) -> None:
@@ -118,10 +119,11 @@ def _couplings(book: Book, data: ChainData, drawn: Drawn) -> None:
     page.note(
         tr(
             "Extract: {shown} of {all} recorded rows, with the peaks of these couplings; table couplings has all. Tension is"
-            " positive.
-        ),
-           " Most and least are those of all couplings at that time.", shown=len(kept), all=len(times))
-    )  # fmt: skip
+            " positive. Most and least are those of all couplings at that time.",
+            shown=len(kept),
+            all=len(times),
+        )
+    )
     columns, values = [Column(TIME, "0.00", key="time")], [times[kept]]
     for number in shown:
         columns.append(Column(tr("force of {coupling} [kN]", coupling=data.couplings[number]), "0.0", key=f"force{number}"))

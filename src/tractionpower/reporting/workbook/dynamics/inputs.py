@@ -139,10 +139,11 @@ def _couplings(book: Book, facts: ChainFacts) -> None:
     page = book.page("Inputs couplings", "Inputs as used: couplings")
     page.section("Sources of the couplings")
     count = [kind.id for k in range(len(facts.data.couplings)) if (kind := facts.data.coupling_of(k)) is not None]
-    page.table(_COUPLINGS, [
-        (kind.id, kind.name, count.count(kind.id), recorded(KNOWN_AS.get(kind.status, kind.status)), kind.source or tr("not told"))
+    sources = [
+        (kind.id, kind.name, count.count(kind.id), recorded(KNOWN_AS.get(kind.status, kind.status)), kind.source)
         for kind in facts.kinds
-    ])  # fmt: skip
+    ]
+    page.table(_COUPLINGS, [(*row, source or tr("not told")) for *row, source in sources])
     page.section("Figures of the couplings")
     add_side_by_side(page, facts.kinds)
     points: dict[str, list[tuple[str, BaseModel]]] = {}
