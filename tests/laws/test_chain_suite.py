@@ -128,34 +128,66 @@ def test_power_in_more_places_pulls_less(runs):
     assert greatest[1] < 0.8 * greatest[0]
 
 
-@ALL
-def test_nothing_swings_up(runs, power, track):
-    # The symptom of unstable programs of that comparison: below 0.2 Hz, growing while nothing is commanded
-    chained = runs(power, track)
+@pytest.mark.parametrize("power", POWER)
+def test_nothing_swings_up(runs, power):
+    # The symptom of unstable programs of that comparison: swings below 0.2 Hz that grow while nothing is commanded
+    chained = runs(power, "level")
     time, force = chained.rows["time_s"], chained.link_rows["force_n"]
-    late = [(110.0, 140.0), (145.0, 175.0)]
     swings = []
-    for low, high in late:
+    for low, high in ((85.0, 115.0), (145.0, 175.0)):
         part = force[(time >= low) & (time < high)]
         line = np.linspace(0.0, 1.0, len(part))
-        trend = np.polynomial.polynomial.polyfit(line, part, 3)  # gradients pass below the train
-        smooth = np.polynomial.polynomial.polyval(line, trend).T
-        swings.append((part - smooth).std(axis=0).max())
-    assert swings[1] < max(1.25 * swings[0], 15e3)
+        trend = np.polynomial.polynomial.polyval(line, np.polynomial.polynomial.polyfit(line, part, 2)).T
+        swings.append((part - trend).std(axis=0).max())
+    assert swings[1] < max(swings[0], 2e3)
+    assert swings[1] < 0.02 * force.max()
 
 
-@pytest.mark.parametrize("coupling", ["arshad", "tps-friction"])
+def with_friction(scenario, static):
+    """Return a train whose wedges have this static friction; the kinetic one is 0.2."""
+    data = scenario.model_dump()
+    data["couplings"][0]["draw"]["wedge"]["static_friction"] = static
+    return DynamicsScenario.model_validate(data)
+
+
+def extremes(scenario, step_s, method="symplectic"):
+    data = scenario.model_dump()
+    data["case"]["run"] = {"duration_s": 120.0, "step_s": step_s, "method": method, "record_every_s": 0.1}
+    chained = Chained(DynamicsScenario.model_validate(data))
+    chained.advance(120.0)
+    return np.array([chained.links["greatest_n"].max(), chained.links["least_n"].min()])
+
+
+@pytest.mark.parametrize("coupling", ["arshad", "tps-friction", "uic-screw-coupling", "zobory-linear"])
 def test_half_the_step_gives_the_same_extremes(coupling):
-    run = {"duration_s": 120.0, "step_s": 0.005, "record_every_s": 0.1}
-    whole, half = (
-        Chained(train("head and middle", "crest", coupling, run=run | {"step_s": step_s})) for step_s in (0.005, 0.0025)
-    )
-    for chained in (whole, half):
-        chained.advance(120.0)
-    scale = half.links["greatest_n"].max()
-    assert whole.links["greatest_n"].max() == pytest.approx(scale, rel=0.01)
-    assert whole.links["least_n"].min() == pytest.approx(half.links["least_n"].min(), abs=0.01 * scale)
-    np.testing.assert_allclose(whole.movers["v_mps"], half.movers["v_mps"], rtol=2e-3)
+    scenario = train("head and middle", "crest", coupling)
+    if coupling == "arshad":
+        scenario = with_friction(scenario, 0.2)
+    whole, half = (extremes(scenario, step_s) for step_s in (0.005, 0.0025))
+    np.testing.assert_allclose(whole, half, rtol=0.01)
+    assert whole[0] > 300e3
+    assert whole[1] < -100e3
+
+
+def test_a_wedge_that_sticks_makes_the_greatest_pull_hang_on_next_to_nothing():
+    # Arshad et al., mu 0.4 at rest and 0.2 moving: friction that falls with speed sticks and slips. A wagon that is heavier by
+    # 1e-9 changes the greatest pull by more than 0.3 %: no step, however small, settles it, and none should be asked to
+    scenario = train("head and middle", "crest")
+    data = scenario.model_dump()
+    found = []
+    for more in (0.0, 1e-9, 1e-6):
+        data["vehicles"][1]["load_t"] = 80.0 * (1.0 + more)
+        found.append(extremes(DynamicsScenario.model_validate(data), 0.0025))
+    pulls, pushes = np.array(found).T
+    assert np.ptp(pulls) > 3e-3 * pulls[0]
+    assert np.ptp(pulls) < 0.3 * pulls[0]  # but the size is known
+    assert np.ptp(pushes) < 1e-2 * abs(pushes[0])
+    data = with_friction(scenario, 0.2).model_dump()
+    steady = []
+    for more in (0.0, 1e-6):
+        data["vehicles"][1]["load_t"] = 80.0 * (1.0 + more)
+        steady.append(extremes(DynamicsScenario.model_validate(data), 0.0025))
+    np.testing.assert_allclose(steady[0], steady[1], rtol=1e-4)
 
 
 def test_methods_agree_on_the_extremes():
