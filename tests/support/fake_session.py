@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+
+from tractionpower.model.dynamics.case import CaseGradient
+from tractionpower.web.hello import profile
+from tractionpower.web.keys import key_map
+from tractionpower.web.pacing import FACTORS
+from tractionpower.web.quantities import panel
 
 SPEED_EDGES_KMH = np.linspace(0.0, 160.0, 33)
 FORCE_EDGES_KN = np.linspace(-600.0, 600.0, 61)
@@ -111,25 +118,75 @@ class FakeSession:
             "speed_kmh": 3.6 * self.speed_mps,
             "position_m": self.place_m,
             "acceleration_mps2": self.acceleration_mps2,
+            "gradient_permille": 0.0,
             "tractive_force_kn": self.effort_kn,
+            "brake_force_kn": 0.07 * self.cylinder_bar * (80.0 + 60.0 * (self.vehicles - 1)),
+            "resistance_kn": 0.0157 * (80.0 + 60.0 * (self.vehicles - 1)),
+            "independent_bar": self.independent_bar,
+            "electric_percent": 100.0 * self.electric / 8.0,
             "first_coupling_kn": forces[0],
             "greatest_tension_kn": self.extremes[0],
             "greatest_compression_kn": self.extremes[1],
             "cylinder_bar": (self.cylinder_bar, 0.96 * self.cylinder_bar),
             "pipe_bar": 5.0 - self.cylinder_bar * 1.5 / 3.8,
             "energy_kwh": self.energy_kwh,
-            "damage_index": 1e-6 * len(self.turns) * self.extremes[0] ** 3 / 1e3,
             "forces_kn": forces,
             "finished": self.time_s >= self.end_s - 0.5 * self.step_s,
         }
 
-    def statistics(self) -> dict[str, Any]:
+    def distributions(self) -> dict[str, Any]:
         total = max(self.time_s, 1e-9)
         edges = {
             "speed_edges_kmh": SPEED_EDGES_KMH,
             "force_edges_kn": FORCE_EDGES_KN,
             "acceleration_edges_mps2": ACCELERATION_EDGES_MPS2,
         }
-        pairs = zip(self.turns, self.turns[1:], strict=False)
-        cycles = [(abs(b - a), 0.5 * (a + b), 0.5) for a, b in pairs if abs(b - a) > 0.1]
-        return {name: counts / total for name, counts in self._counts.items()} | edges | {"rainflow": cycles}
+        return {name: counts / total for name, counts in self._counts.items()} | edges
+
+
+class FakeKeeper:
+    """Keeps what was set, and makes cycles of the turns of a session."""
+
+    def __init__(self, session: FakeSession) -> None:
+        self.session = session
+        self.notes: list[tuple[float, dict[str, Any]]] = []
+        self.taken = 0
+
+    def note(self, time_s: float, setting: Any) -> None:
+        self.notes.append((time_s, dict(setting)))
+
+    def take(self) -> None:
+        self.taken += 1
+
+    def cycles(self) -> list[tuple[float, float, float]]:
+        turns = self.session.turns
+        return [(abs(b - a), 0.5 * (a + b), 0.5) for a, b in pairwise(turns) if abs(b - a) > 0.1]
+
+    def damage_index(self) -> float:
+        return sum(count * (size / 100.0) ** 3 for size, _, count in self.cycles())
+
+
+HIGHEST = {"drive": 15, "brake": 15, "electric": 8}
+
+
+def fake_hello(vehicles: int = 21, name: str = "Twenty wagons over a hill", folder: str = "reports/hill") -> dict[str, Any]:
+    """Return what a page is told first of a fake session."""
+    gradients = ((0.0, 400.0, 0.0), (400.0, 1200.0, 8.0), (1200.0, 1500.0, 0.0), (1500.0, 2600.0, -6.0))
+    return {
+        "name": name,
+        "folder": folder,
+        "vehicles": [f"{number + 1} wagon" for number in range(vehicles)],
+        "powered": [True] + [False] * (vehicles - 1),
+        "mass_t": 80.0 + 60.0 * (vehicles - 1),
+        "limits": [{"tension_kn": None, "compression_kn": None}] * (vehicles - 1),
+        "highest": HIGHEST,
+        "independent": True,
+        "highest_bar": 3.8,
+        "profile": profile(tuple(CaseGradient(from_m=a, to_m=b, permille=p) for a, b, p in gradients)),
+        "curves": [[500.0, 900.0, 400.0, "right"], [1700.0, 2100.0, 600.0, "left"]],
+        "length_m": 15.0 * vehicles,
+        "step_s": 0.01,
+        "keys": key_map(),
+        "panel": panel(),
+        "factors": list(FACTORS),
+    }

@@ -1,13 +1,13 @@
-"""What the driving page wants of a session of train dynamics, whatever computes it."""
+"""What the driving page wants of a session of train dynamics, whatever computes it, and of what keeps it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 
 class Session(Protocol):
-    """A train that is computed while it is driven."""
+    """A train that is computed while it is driven; `tractionpower.dynamics.session.Session` is one."""
 
     @property
     def time_s(self) -> float:
@@ -17,8 +17,8 @@ class Session(Protocol):
     def steps(self) -> int:
         """Steps computed so far."""
 
-    def advance(self, until_s: float) -> int:
-        """Compute up to a simulated time [s] and return why it came back, a reason of `kernels.chain_tables`."""
+    def advance(self, until_s: float) -> Any:
+        """Compute up to a simulated time [s]."""
 
     def set(
         self,
@@ -33,5 +33,25 @@ class Session(Protocol):
     def snapshot(self) -> Mapping[str, Any]:
         """Return what is the case now, in units of the boundary."""
 
-    def statistics(self) -> Mapping[str, Any]:
+    def distributions(self) -> Mapping[str, Any]:
         """Return the distributions up to now, by name; see `tractionpower.web.messages.statistics_message`."""
+
+
+class Keeper(Protocol):
+    """Keeps what happens while driving, and counts the cycles of the coupling force."""
+
+    def note(self, time_s: float, setting: Mapping[str, Any]) -> None:
+        """Note what was set, and when [s]."""
+
+    def take(self) -> None:
+        """Take what the session has recorded since the last time; called in the thread of the desk, so it must be quick."""
+
+    def damage_index(self) -> float:
+        """Return the damage done to the first coupling, in equivalent cycles of 100 kN."""
+
+    def cycles(self) -> list[tuple[float, float, float]]:
+        """Return the rainflow cycles of the first coupling: range [kN], mean [kN], how many."""
+
+
+Publish = Callable[[str, Mapping[str, Any]], None]
+"""Takes the kind of a message and what it says."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import asdict
 from queue import Empty, SimpleQueue
-from typing import Any, Protocol
+from typing import Any
 
-from tractionpower.web.cab import Session
+from tractionpower.web.cab import Keeper, Publish, Session
 from tractionpower.web.controls import Controls
 from tractionpower.web.orders import Action, Order, SetFactor
 from tractionpower.web.pacing import FACTORS, Pace, Pacer, Rate
@@ -20,25 +20,11 @@ FRAME_TICKS = 4
 STATISTICS_S = 1.0
 """Clock time between two messages of statistics [s]."""
 
-KEEP_S = 2.0
+KEEP_S = 1.0
 """Clock time after which what was recorded is handed on to be written [s]."""
 
 MOST_WAITING = 200
 """Orders that wait at most; a page that sends more is not a person."""
-
-
-class Keeper(Protocol):
-    """Keeps what happens while driving."""
-
-    def note(self, time_s: float, setting: Mapping[str, Any]) -> None:
-        """Note what was set, and when."""
-
-    def take(self, session: Session) -> None:
-        """Take what the session has recorded since the last time; must be quick."""
-
-
-Publish = Callable[[str, Mapping[str, Any]], None]
-"""Takes the kind of a message and what it says."""
 
 
 class Desk:
@@ -102,7 +88,7 @@ class Desk:
         why = "stopped"
         try:
             why = self._drive()
-            self._keeper.take(self._session)
+            self._keeper.take()
         except BaseException as error:  # told by the thread that waits for this one
             self.failure, why = error, "failed"
         self._publish("over", {"why": why, "time_s": self._session.time_s})
@@ -166,7 +152,7 @@ class Desk:
     def _tell(self) -> bool:
         """Send a frame, statistics where they are due, and return whether the session has ended."""
         self._sent += 1
-        snapshot = self._session.snapshot()
+        snapshot = {**self._session.snapshot(), "damage_index": self._keeper.damage_index()}
         pacer = self._pacer
         pace = Pace(
             lag_ms=1e3 * pacer.lag_s,
@@ -180,8 +166,8 @@ class Desk:
         now = self._clock()
         if now >= self._statistics_at:
             self._statistics_at = now + STATISTICS_S
-            self._publish("statistics", self._session.statistics())
+            self._publish("statistics", {**self._session.distributions(), "rainflow": self._keeper.cycles()})
         if now >= self._keep_at:
             self._keep_at = now + KEEP_S
-            self._keeper.take(self._session)
+            self._keeper.take()
         return bool(snapshot.get("finished"))

@@ -16,9 +16,9 @@ from typing import Any
 from aiohttp import web
 
 from tractionpower.errors import UsageError
-from tractionpower.web.cab import Session
+from tractionpower.web.cab import Keeper, Session
 from tractionpower.web.controls import Controls
-from tractionpower.web.desk import Desk, Keeper
+from tractionpower.web.desk import Desk
 from tractionpower.web.guard import LOOPBACK, Guard
 from tractionpower.web.server import Hub, new_app
 

@@ -5,53 +5,51 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from tractionpower.dynamics.commands import electric_levels
+from tractionpower.dynamics.compile import CompiledChain
 from tractionpower.model.dynamics.case import CaseGradient, DynamicsScenario
 from tractionpower.web.keys import key_map
 from tractionpower.web.pacing import FACTORS
 from tractionpower.web.quantities import panel
 
 
-def highest_levels(scenario: DynamicsScenario) -> dict[str, int]:
+def highest_levels(compiled: CompiledChain) -> dict[str, int]:
     """Return the highest level of each control; 0 where the train has no such control."""
-    parts = scenario.parts
+    case, engines = compiled.scenario.case, compiled.chain.engines
     return {
-        "drive": max((part.traction.levels for part in parts if part.traction), default=0),
-        "brake": scenario.case.air_brake.levels if any(part.brake for part in parts) else 0,
-        "electric": max((part.electric_brake.levels for part in parts if part.electric_brake), default=0),
+        "drive": int(engines["levels"].max(initial=0)),
+        "brake": case.air_brake.levels if bool((compiled.chain.vehicles["brake"] >= 0).any()) else 0,
+        "electric": electric_levels(case) if bool((engines["electric_n"] > 0.0).any()) else 0,
     }
 
 
-def has_independent_brake(scenario: DynamicsScenario) -> bool:
-    """Return whether a powered vehicle of the train has an air brake."""
-    return any(part.brake is not None and part.traction is not None for part in scenario.parts)
+def has_independent_brake(compiled: CompiledChain) -> bool:
+    """Return whether a vehicle of the train has the independent brake."""
+    return bool(compiled.chain.brakes["independent"].any())
 
 
-def hello(scenario: DynamicsScenario, folder: str) -> dict[str, Any]:
+def hello(compiled: CompiledChain, folder: str) -> dict[str, Any]:
     """Return what a page is told first; `folder` is where the results go."""
-    case, parts = scenario.case, scenario.parts
+    scenario = compiled.scenario
+    case, parts, vehicles = scenario.case, scenario.parts, compiled.chain.vehicles
     return {
         "name": case.name,
         "folder": folder,
-        "vehicles": [part.id for part in parts],
-        "powered": [part.traction is not None for part in parts],
+        "vehicles": list(compiled.vehicle_names),
+        "powered": (vehicles["engine"] >= 0).tolist(),
+        "mass_t": float(vehicles["mass_kg"].sum()) / 1e3,
         "limits": [_endurable(scenario, part.coupling) for part in parts[:-1]],
-        "highest": highest_levels(scenario),
-        "independent": has_independent_brake(scenario),
+        "highest": highest_levels(compiled),
+        "independent": has_independent_brake(compiled),
         "highest_bar": case.air_brake.cylinder_pressure_bar,
         "profile": profile(case.track.gradients),
         "curves": [[curve.from_m, curve.to_m, curve.radius_m, curve.turns] for curve in case.track.curves],
-        "length_m": train_length_m(scenario),
-        "duration_s": case.run.duration_s,
+        "length_m": float(compiled.chain.chain[0]["length_m"]),
         "step_s": case.run.step_s,
         "keys": key_map(),
         "panel": panel(),
         "factors": list(FACTORS),
     }
-
-
-def train_length_m(scenario: DynamicsScenario) -> float:
-    """Return the length of the train [m], as far as its vehicles say theirs."""
-    return sum(scenario.vehicle(part.id).length_m or 0.0 for part in scenario.parts)
 
 
 def profile(gradients: tuple[CaseGradient, ...]) -> list[list[float]]:
@@ -68,11 +66,6 @@ def profile(gradients: tuple[CaseGradient, ...]) -> list[list[float]]:
         rows.append([gradient.from_m, gradient.to_m, gradient.permille, height])
         height += gradient.permille * 1e-3 * (gradient.to_m - gradient.from_m)
     return rows
-
-
-def gradient_at(rows: list[list[float]], place_m: float) -> float:
-    """Return the gradient [permille] of a profile at a place; level where it says nothing."""
-    return next((permille for start, end, permille, _ in rows if start <= place_m < end), 0.0)
 
 
 def _endurable(scenario: DynamicsScenario, coupling: str | None) -> Mapping[str, float | None]:

@@ -24,12 +24,13 @@ class Shown(NamedTuple):
 
 PANEL = (
     Shown("time_s", "Time", "s", 1),
-    Shown("position_m", "Front has run", "m", 1),
+    Shown("position_m", "Way of the front", "m", 1),
     Shown("speed_kmh", "Speed", "km/h", 1),
     Shown("acceleration_mps2", "Acceleration", "m/s²", 3),
-    Shown("gradient_permille", "Gradient", "‰", 1),
+    Shown("gradient_permille", "Gradient, first vehicle", "‰", 1),
     Shown("tractive_force_kn", "Tractive effort", "kN", 1),
-    Shown("electric_force_kn", "Electric brake", "kN", 1),
+    Shown("brake_force_kn", "Brakes, all", "kN", 1),
+    Shown("resistance_kn", "Resistance", "kN", 1),
     Shown("first_coupling_kn", "First coupling", "kN", 1),
     Shown("greatest_tension_kn", "Greatest tension", "kN", 1),
     Shown("greatest_compression_kn", "Greatest compression", "kN", 1),
@@ -37,8 +38,9 @@ PANEL = (
     Shown("cylinder_first_bar", "Cylinder, first", "bar", 2),
     Shown("cylinder_last_bar", "Cylinder, last", "bar", 2),
     Shown("independent_bar", "Independent brake", "bar", 2),
+    Shown("electric_percent", "Electric brake", "%", 0),
     Shown("energy_kwh", "Work of traction", "kWh", 2),
-    Shown("damage_index", "Damage index", "", 3),
+    Shown("damage_index", "Cycles of 100 kN", "", 3),
 )
 """Numbers of the panel (Zobory and Bekefi, figure 14, lower part), in their order."""
 

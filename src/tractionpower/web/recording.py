@@ -44,21 +44,11 @@ class Driven:
         return tuple(self._rows[time_s] for time_s in sorted(self._rows))
 
 
-def to_drive(scenario: DynamicsScenario, duration_s: float | None, *, follow: bool) -> DynamicsScenario:
-    """Return a case as it is driven: standstill does not end it, and the driver does what its commands would do.
-
-    What the case sets at the start holds until the driver sets something else; with `follow` all its commands stay.
-    """
-    case = scenario.case
-    commands = case.commands if follow else tuple(row for row in case.commands if row.time_s == 0.0)
-    run = case.run.model_copy(update={"ends": "duration", "duration_s": duration_s or case.run.duration_s})
-    return scenario.model_copy(update={"case": case.model_copy(update={"commands": commands, "run": run})})
-
-
 def as_driven(scenario: DynamicsScenario, commands: tuple[Command, ...], time_s: float) -> DynamicsScenario:
     """Return a case with what was driven, up to the time [s] that was reached."""
     case = scenario.case
-    run = case.run.model_copy(update={"duration_s": max(time_s, case.run.step_s)})
+    changed = {"duration_s": max(time_s, case.run.step_s), "ends": "duration", "rows_limit": None}
+    run = case.run.model_copy(update=changed)
     return scenario.model_copy(update={"case": case.model_copy(update={"commands": commands, "run": run})})
 
 
@@ -69,15 +59,16 @@ def commands_text(commands: Sequence[Command]) -> str:
     return csv_text([COLUMNS[place] for place in kept], [[row[place] for place in kept] for row in rows])
 
 
-def write_case(scenario: DynamicsScenario, folder: Path) -> Path:
-    """Write a case with all that it names into a folder, so that it can be run again; return its file."""
+def write_case(scenario: DynamicsScenario, folder: Path, *, with_stock: bool = True) -> Path:
+    """Write a case into a folder, so that it can be run again, with all that it names (`with_stock`); return its file."""
     case = _declared(scenario.case)
     if scenario.case.commands:
         case["commands"] = COMMANDS_FILE
     texts = {CASE_FILE: document(case)}
     if scenario.case.commands:
         texts[COMMANDS_FILE] = commands_text(scenario.case.commands)
-    for shelf, things in (("vehicles", scenario.vehicles), ("couplings", scenario.couplings)):
+    shelves = (("vehicles", scenario.vehicles), ("couplings", scenario.couplings)) if with_stock else ()
+    for shelf, things in shelves:
         names = file_names(thing.id for thing in things)
         for thing in things:
             texts[f"rollingstock/{shelf}/{names[thing.id]}"] = document(_declared(thing))

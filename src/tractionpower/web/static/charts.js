@@ -11,7 +11,7 @@ const CHARTS = [
   { title: "Acceleration", small: "first vehicle", unit: "m/s²", names: ["acceleration_mps2"], colours: ["green"], decimals: 3, least: 0.1 },
   { title: "First coupling", small: "tension positive", unit: "kN", names: ["first_coupling_kn"], colours: ["purple"], decimals: 1, least: 20 },
   { title: "Work of traction", unit: "kWh", names: ["energy_kwh"], colours: ["orange"], decimals: 2, least: 1, fromZero: true },
-  { title: "Damage index", small: "of coupling force ranges", names: ["damage_index"], colours: ["sky"], decimals: 3, least: 0.01, fromZero: true },
+  { title: "Damage index", small: "cycles of 100 kN, first coupling", names: ["damage_index"], colours: ["sky"], decimals: 3, least: 0.01, fromZero: true },
 ];
 const NAMES = ["time_s", ...CHARTS.flatMap((chart) => chart.names)];
 const MOST = 12000; // points kept; then the older half is thinned out

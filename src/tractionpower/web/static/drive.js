@@ -59,7 +59,8 @@ async function greet(message) {
   document.title = `${hello.name} – driving`;
   write("name", hello.name);
   const powered = hello.powered.filter(Boolean).length;
-  write("train", `${hello.vehicles.length} vehicles, ${powered} powered${hello.length_m > 0 ? `, ${number(hello.length_m, 0)} m` : ""}`);
+  const weights = `${number(hello.mass_t, 0)} t, ${number(hello.length_m, 0)} m`;
+  write("train", `${hello.vehicles.length} vehicles, ${powered} powered, ${weights}, step ${1000 * hello.step_s} ms`);
   strips = new Strips(at("charts"), WINDOWS[0]);
   strips.setHighest(hello.highest);
   makePanel();
@@ -239,9 +240,9 @@ function drawForces() {
 
 function writeNumbers() {
   const { snapshot, desk } = frame;
-  const gradient = gradientAt(snapshot.position_m);
+  const gradient = snapshot.gradient_permille ?? 0;
   for (const item of hello.panel) {
-    const value = item.name === "gradient_permille" ? gradient : snapshot[item.name];
+    const value = snapshot[item.name];
     write(`value-${item.name}`, typeof value === "number" ? number(value, item.decimals) : "–");
   }
   const minutes = Math.floor(snapshot.time_s / 60);
@@ -257,11 +258,6 @@ function writeNumbers() {
   at("given-up").className = "late";
   write("given-up", `given up ${number(desk.given_up_s, 2)} s`);
   markControls(snapshot, desk);
-}
-
-function gradientAt(place) {
-  const row = hello.profile.find((item) => item[0] <= place && place < item[1]);
-  return row ? row[2] : 0;
 }
 
 function markControls(snapshot, desk) {
