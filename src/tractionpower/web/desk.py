@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict
 from queue import Empty, SimpleQueue
-from typing import Any
 
 from tractionpower.web.cab import Keeper, Publish, Session
 from tractionpower.web.controls import Controls
