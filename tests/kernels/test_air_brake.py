@@ -7,7 +7,7 @@ import pytest
 from brake_reference import Reference
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from small_controls import GEAR, LENGTH_M, brake_force_at, compiled, friction_at, pressures, reduction, scenario, taken_again
+from small_controls import GEAR, LENGTH_M, brake_force_at, compiled, friction_at, pressures, reduction, scenario
 
 BAR = 1e5
 PSI = 6894.757293168361
@@ -139,16 +139,6 @@ def test_a_cylinder_that_meets_its_falling_aim_empties_with_the_other_time_const
         assert after.argmax() > 0  # it rose on
     else:
         assert fine[300, 0] == pytest.approx(1.5e5 * (1.0 - math.exp(-3.0 * 0.75)), rel=1e-12)
-
-
-@pytest.mark.interpreted
-def test_a_step_can_be_taken_again():
-    given_ = braked((0.5, 12), (1.0, 4), (4.0, "emergency"), cylinder_fill_s=0.8, cylinder_release_s=2.0)
-    chain, state = compiled(given_)
-    taken_again(chain, state, 0.0, 9.0, 1.5)
-    straight, _ = pressures(given_, [0.0, 1.5])
-    np.testing.assert_array_equal(state.movers["cylinder_pa"], straight[-1])
-    assert straight[-1].min() > 0.0
 
 
 def test_emergency_fills_no_faster_than_full_service_and_its_limit_holds_until_the_next_application():

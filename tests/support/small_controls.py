@@ -7,7 +7,7 @@ import numpy as np
 from tractionpower.dynamics.brakes import compile_brakes, settled_cylinder_pa
 from tractionpower.dynamics.commands import compile_commands
 from tractionpower.dynamics.engines import compile_engines
-from tractionpower.kernels.air_brake import brake_force, friction_of, move_brakes, reduction_at, take_back_brakes
+from tractionpower.kernels.air_brake import brake_force, friction_of, move_brakes, reduction_at
 from tractionpower.kernels.chain_state import LEDGER, MOVER, ChainState
 from tractionpower.kernels.chain_tables import POINT, VEHICLE, Chain
 from tractionpower.kernels.engines import electric_effort, lagged, steady_effort
@@ -21,8 +21,6 @@ LENGTH_M = 20.0
 
 GEAR = {"cylinder_area_cm2": 1000.0, "rigging_ratio": 5.0, "rigging_efficiency": 1.0, "friction": {"law": "constant"}}
 """A brake gear of 0.5 N/Pa and a friction of 0.3."""
-
-_EMPTY = np.zeros(0)
 
 
 def vehicle(identifier: str = "wagon", kind: str = "wagon", **given: Any) -> Vehicle:
@@ -61,15 +59,19 @@ def compiled(given: DynamicsScenario) -> tuple[Chain, ChainState]:
     vehicles = np.zeros(len(parts), VEHICLE)
     vehicles["engine"], vehicles["brake"] = engines.rows, brakes.rows
     movers, ledger = np.zeros(len(parts), MOVER), np.zeros(1, LEDGER)
-    ledger["pipe_rows"] = len(pipe)
+    ledger["pipe_rows"], ledger["control_rows"] = len(pipe), len(controls)
+    controls = np.append(controls, np.full(3, -1, controls.dtype))  # room for a driver, not in use
     movers["cylinder_pa"] = np.where(vehicles["brake"] >= 0, settled_cylinder_pa(brakes.air[0], pipe[0]), 0.0)
-    empty = np.zeros(0, MOVER)
-    chain = Chain(
-        empty, vehicles, engines.engines, engines.levels, brakes.brakes, brakes.frictions, brakes.grid, brakes.air,
-        empty, empty, np.array(curves, POINT), empty, empty, empty, empty,
-    )  # fmt: skip
-    state = ChainState(movers, np.zeros(0, MOVER), ledger, pipe, controls, _EMPTY, _EMPTY, _EMPTY, _EMPTY)
+    rows = {"vehicles": vehicles, "engines": engines.engines, "levels": engines.levels, "curves": np.array(curves, POINT)}
+    rows |= {"brakes": brakes.brakes, "frictions": brakes.frictions, "grid": brakes.grid, "air": brakes.air}
+    chain = Chain(**_filled(Chain, **rows))
+    state = ChainState(**_filled(ChainState, movers=movers, ledger=ledger, pipe=pipe, controls=controls))
     return chain, state
+
+
+def _filled(bundle: Any, **given: Any) -> dict[str, Any]:
+    """Return the fields of a bundle of arrays; those that controls do not read are empty."""
+    return dict.fromkeys(bundle._fields, np.zeros(0)) | given
 
 
 @njit
@@ -120,11 +122,3 @@ def friction_at(chain, row, force_n, v):
 @njit
 def reduction(chain, state, t_s):
     return reduction_at(chain, state, t_s)
-
-
-@njit
-def taken_again(chain, state, t_s, long_s, short_s):
-    """Take a step, take it back, take a shorter one."""
-    move_brakes(chain, state, t_s, long_s)
-    take_back_brakes(state)
-    move_brakes(chain, state, t_s, short_s)

@@ -20,8 +20,8 @@ _DEAD = 40.0
 def move_brakes(chain, state, t_s, h_s):
     """Move the pressures of all cylinders and independent brakes from the time `t_s` to `t_s + h_s` [s].
 
-    What they were is kept in `cylinder_before_pa` and `independent_before_pa`. The rows of `state.pipe` beyond
-    `ledger.pipe_rows` are not read; rows of `state.controls` not in use have an infinite `at_s`.
+    What they were is kept in `cylinder_before_pa` and `independent_before_pa`. The rows of `state.pipe` and `state.controls`
+    beyond `ledger.pipe_rows` and `ledger.control_rows` are not read.
     """
     air, pipe, rows = chain.air[0], state.pipe, state.ledger[0].pipe_rows
     for i in range(state.movers.shape[0]):
@@ -34,14 +34,6 @@ def move_brakes(chain, state, t_s, h_s):
             mover.cylinder_pa, mover.pipe_row = _cylinder(air, pipe, (rows, row), brake.delay_s, mover.cylinder_pa, t_s, h_s)
             if brake.independent:
                 mover.independent_pa = _independent(state, air.independent_s, mover.independent_pa, t_s, h_s)
-
-
-@inlined
-def take_back_brakes(state):
-    """Set all cylinders and independent brakes back to what they were before the last step: it is taken again."""
-    for i in range(state.movers.shape[0]):
-        mover = state.movers[i]
-        mover.cylinder_pa, mover.independent_pa = mover.cylinder_before_pa, mover.independent_before_pa
 
 
 @inlined
@@ -240,7 +232,7 @@ def _share(time_s, own_s, lag_s):
 @inlined
 def _independent(state, time_constant_s, pressure, t_s, h_s):
     """Return the pressure of an independent brake after `h_s`: it follows what the driver sets, without delay."""
-    controls, last = state.controls, state.controls.shape[0] - 1
+    controls, last = state.controls, state.ledger[0].control_rows - 1
     row = min(max(state.ledger[0].control_row, 0), last)
     while row > 0 and controls[row].at_s > t_s:
         row -= 1

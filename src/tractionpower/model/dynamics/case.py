@@ -168,8 +168,13 @@ class Case(Declaration):
     source: Text = Field(default="", description="Where the case comes from; what is given and what is filled in.")
     vehicles: Annotated[tuple[CasePart, ...], Field(min_length=1, description="Vehicles of the train, from the front.")]
     coupling: Identifier | None = Field(default=None, description="Coupling of all vehicles that name none.")
-    traction: Traction | None = Field(default=None, description="Traction of all powered vehicles that have none of their own.")
-    electric_brake: ElectricBrake | None = Field(default=None, description="Electric brake of all powered vehicles.")
+    traction: Traction | None = Field(
+        default=None,
+        description="Traction of all powered vehicles without one of their own: those with a drive, and locomotives.",
+    )
+    electric_brake: ElectricBrake | None = Field(
+        default=None, description="Electric brake of all powered vehicles; left out: what their own files say of it."
+    )
     brake: BrakeGear | None = Field(
         default=None, description="Air brake of all vehicles that have none of their own; left out: none."
     )
