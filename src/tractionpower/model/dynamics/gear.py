@@ -83,8 +83,7 @@ class BlockFriction(Declaration):
 class BrakeGear(Declaration):
     """Air brake of one vehicle: cylinder, rigging, blocks (Zobory and Bekefi, eq. 4 and 5).
 
-    The force of all blocks at full cylinder pressure follows from cylinder and rigging, or from `braked_weight_percent`-like
-    `brake_ratio`.
+    The force of all blocks follows from cylinder, rigging and efficiency, or from `brake_ratio`, which has the efficiency in it.
     """
 
     cylinder_area_cm2: Real | None = field(
@@ -95,7 +94,7 @@ class BrakeGear(Declaration):
     )
     brake_ratio: Real | None = field(
         "brake_ratio", "Force of all blocks at the greatest cylinder pressure over the weight of the vehicle as loaded"
-        " (net braking ratio).", above=0, at_most=5, default=None,
+        " (net braking ratio, after the losses of the rigging).", above=0, at_most=5, default=None,
     )  # fmt: skip
     rigging_efficiency: Real = field(
         "rigging_efficiency", "Efficiency of the rigging.", above=0, at_most=1, default=0.83, source="secondary"
@@ -110,6 +109,8 @@ class AirBrake(Declaration):
 
     The pressure of the pipe falls by a reduction that tends exponentially to the one commanded; it reaches a vehicle after
     its distance over `propagation_mps`; the cylinder gets `gain` times the reduction there, up to its greatest pressure.
+    Its lag behind that, in filling and in emptying, is ours; with 0 the cylinder is the paper's. In emergency the pipe is
+    emptied fast, and the cylinder's own lag keeps its filling in the time of full service.
     """
 
     pipe_pressure_bar: Real = field("pipe_pressure_bar", "Pressure of the charged pipe, gauge.", above=0, at_most=15, default=5.0)
