@@ -32,6 +32,14 @@ def begin_efforts(chain, state, control, work):
 
 
 @njit
+def take_back_efforts(chain, state, work):
+    """Set the efforts of the drives back to those at the beginning of a step that is refused."""
+    for i in range(state.movers.shape[0]):
+        if chain.vehicles[i].engine >= 0:
+            state.movers[i].traction_n, state.movers[i].electric_n = work.efforts[i, 0], work.efforts[i, 1]
+
+
+@njit
 def set_efforts(chain, state, control, v, tau_s, work):
     """Write the efforts of the drives `tau_s` after the beginning of a step, at which the speeds are `v` [m/s].
 

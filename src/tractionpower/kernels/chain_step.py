@@ -9,7 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from tractionpower.kernels.chain_forces import begin_efforts, set_applied, set_efforts, set_resisting, stretch_of
+from tractionpower.kernels.chain_forces import (
+    begin_efforts,
+    set_applied,
+    set_efforts,
+    set_resisting,
+    stretch_of,
+    take_back_efforts,
+)
 from tractionpower.kernels.chain_state import DONE, STEP_TOO_SMALL
 from tractionpower.kernels.chain_tables import EULER, RK4, VARIABLE
 from tractionpower.kernels.couplings import commit_coupling
@@ -121,6 +128,7 @@ def runge(chain, state, control, whole, work):
         if method == VARIABLE and error > 1.0:
             wanted = h * max(0.2, 0.9 * error**-0.2)
             ledger.rejected += 1
+            take_back_efforts(chain, state, work)
             if wanted < _LEAST_STEP_S:
                 return STEP_TOO_SMALL
             continue
