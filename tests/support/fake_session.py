@@ -130,25 +130,28 @@ class FakeSession:
             "cylinder_bar": (self.cylinder_bar, 0.96 * self.cylinder_bar),
             "pipe_bar": 5.0 - self.cylinder_bar * 1.5 / 3.8,
             "energy_kwh": self.energy_kwh,
+            "damage_index": sum(count * (size / 100.0) ** 3 for size, _, count in self.cycles()),
             "forces_kn": forces,
             "finished": self.time_s >= self.end_s - 0.5 * self.step_s,
         }
 
-    def distributions(self) -> dict[str, Any]:
+    def cycles(self) -> list[tuple[float, float, float]]:
+        return [(abs(b - a), 0.5 * (a + b), 0.5) for a, b in pairwise(self.turns) if abs(b - a) > 0.1]
+
+    def statistics(self) -> dict[str, Any]:
         total = max(self.time_s, 1e-9)
         edges = {
             "speed_edges_kmh": SPEED_EDGES_KMH,
             "force_edges_kn": FORCE_EDGES_KN,
             "acceleration_edges_mps2": ACCELERATION_EDGES_MPS2,
         }
-        return {name: counts / total for name, counts in self._counts.items()} | edges
+        return {name: counts / total for name, counts in self._counts.items()} | edges | {"rainflow": self.cycles()}
 
 
 class FakeKeeper:
-    """Keeps what was set, and makes cycles of the turns of a session."""
+    """Keeps what was set."""
 
-    def __init__(self, session: FakeSession) -> None:
-        self.session = session
+    def __init__(self) -> None:
         self.notes: list[tuple[float, dict[str, Any]]] = []
         self.taken = 0
 
@@ -157,13 +160,6 @@ class FakeKeeper:
 
     def take(self) -> None:
         self.taken += 1
-
-    def cycles(self) -> list[tuple[float, float, float]]:
-        turns = self.session.turns
-        return [(abs(b - a), 0.5 * (a + b), 0.5) for a, b in pairwise(turns) if abs(b - a) > 0.1]
-
-    def damage_index(self) -> float:
-        return sum(count * (size / 100.0) ** 3 for size, _, count in self.cycles())
 
 
 HIGHEST = {"drive": 15, "brake": 15, "electric": 8}

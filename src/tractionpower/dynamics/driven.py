@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from tractionpower.dynamics.session import Rows, Session
-from tractionpower.dynamics.statistics import RainflowCounter
+from tractionpower.dynamics.statistics import EXPONENT, RainflowCounter
 from tractionpower.errors import UsageError
 from tractionpower.model.dynamics.case import DynamicsScenario
+
+REFERENCE_KN = 100.0
+"""Range of the cycles in which the index of damage counts [kN]."""
 
 
 class DrivenSession(Session):
@@ -31,8 +34,8 @@ class DrivenSession(Session):
     def snapshot(self) -> dict[str, Any]:
         """Return what is the case now, with the index of damage of the first coupling as the last `statistics` found it.
 
-        The papers leave the operational evaluation index open. This one is ours: rainflow cycles of the force of the first
-        coupling times their range to the power of three [MN³].
+        The papers leave the operational evaluation index open. This one is ours: the rainflow cycles of the force of the first
+        coupling, by their range to the power of three, as the number of cycles of 100 kN that would do the same damage.
         """
         return super().snapshot() | {"damage_index": self._damage}
 
@@ -43,7 +46,7 @@ class DrivenSession(Session):
             return found | {"rainflow": []}
         self._collect()
         now = self.state.links["turn_n"][:1]
-        self._damage = float(self._cycles.damage(now)[0]) / 1e9
+        self._damage = float(self._cycles.damage(now)[0]) / REFERENCE_KN**EXPONENT
         cycles = self._cycles.cycles(now)[0]
         return found | {"rainflow": [(range_kn, mean_kn, count) for (range_kn, mean_kn), count in cycles.items()]}
 

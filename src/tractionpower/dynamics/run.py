@@ -63,6 +63,8 @@ class CaseRun:
         Takes the rows.
     study
         Name of the case, for ``run.json``.
+    new_session
+        Makes the session of a case that has been checked.
 
     Raises
     ------
@@ -70,11 +72,17 @@ class CaseRun:
         With all problems of the case.
     """
 
-    def __init__(self, scenario: DynamicsScenario, writer: Writer, study: str = "") -> None:
+    def __init__(
+        self,
+        scenario: DynamicsScenario,
+        writer: Writer,
+        study: str = "",
+        new_session: Callable[[DynamicsScenario], Session] = Session,
+    ) -> None:
         problems = check_case(scenario)
         raise_errors(problems)
         self.scenario, self.study, self.warnings = scenario, study, tuple(problems)
-        self.session = Session(scenario)
+        self.session = new_session(scenario)
         compiled = self.session.compiled
         names = compiled.vehicle_names, compiled.coupling_names
         self.recorder = ChainRecorder(scenario, names, compiled.chain.vehicles["inertia_kg"], self.session.state, writer)
@@ -82,6 +90,7 @@ class CaseRun:
         self._started = time.perf_counter()
         self._compile_s = 0.0
         self._failure = ""
+        self._is_left = False
 
     @property
     def done(self) -> int:
@@ -108,6 +117,12 @@ class CaseRun:
             if progress is not None:
                 progress(self.done, self.steps)
         recorder.close(session.state, session.compiled.chain.bins)
+        return self.outcome()
+
+    def leave(self, scenario: DynamicsScenario, failure: str = "") -> Outcome:
+        """End a run that a driver has ended: it is one of the case as he has driven it; `failure` says what ended it instead."""
+        self.scenario, self._failure, self._is_left = scenario, failure, True
+        self.recorder.close(self.session.state, self.session.compiled.chain.bins)
         return self.outcome()
 
     def outcome(self) -> Outcome:
@@ -141,7 +156,7 @@ class CaseRun:
     def _status(self) -> str:
         if self._failure:
             return "flagged"
-        return "complete" if self.session.has_ended else "interrupted"
+        return "complete" if self.session.has_ended or self._is_left else "interrupted"
 
 
 def run_case(scenario: DynamicsScenario, writer: RunWriter, study: str = "", progress: Progress | None = None) -> Outcome:

@@ -120,6 +120,12 @@ class RunWriter:
             write_whole(path, lambda temporary: write_part(rows, temporary))
         self._parts.setdefault(table, []).append(path)
 
+    def keep(self, scenario: Declaration) -> None:
+        """Keep `scenario` with the results instead of that of the beginning: what was driven is known at the end only."""
+        self._scenario = scenario
+        with failures_told(self.folder):
+            write_text(self.running / SCENARIO_FILE, canonical_json(scenario))
+
     @property
     def beside_parts(self) -> Path:
         """Folder of what a later study into the same folder goes on from; gone when one is finished that has no use for it."""

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 
 class Session(Protocol):
-    """A train that is computed while it is driven; `tractionpower.dynamics.session.Session` is one."""
+    """A train that is computed while it is driven; `tractionpower.dynamics.driven.DrivenSession` is one."""
 
     @property
     def time_s(self) -> float:
@@ -33,24 +33,18 @@ class Session(Protocol):
     def snapshot(self) -> Mapping[str, Any]:
         """Return what is the case now, in units of the boundary."""
 
-    def distributions(self) -> Mapping[str, Any]:
-        """Return the distributions up to now, by name; see `tractionpower.web.messages.statistics_message`."""
+    def statistics(self) -> Mapping[str, Any]:
+        """Return the distributions and cycles up to now, by name; see `tractionpower.web.messages.statistics_message`."""
 
 
 class Keeper(Protocol):
-    """Keeps what happens while driving, and counts the cycles of the coupling force."""
+    """Keeps what happens while driving."""
 
     def note(self, time_s: float, setting: Mapping[str, Any]) -> None:
         """Note what was set, and when [s]."""
 
     def take(self) -> None:
         """Take what the session has recorded since the last time; called in the thread of the desk, so it must be quick."""
-
-    def damage_index(self) -> float:
-        """Return the damage done to the first coupling, in equivalent cycles of 100 kN."""
-
-    def cycles(self) -> list[tuple[float, float, float]]:
-        """Return the rainflow cycles of the first coupling: range [kN], mean [kN], how many."""
 
 
 Publish = Callable[[str, Mapping[str, Any]], None]

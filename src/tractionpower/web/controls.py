@@ -34,19 +34,24 @@ class Controls:
             case SetLevel(control, level):
                 return self._set(control, level)
             case StepLevel(control, by):
-                wanted = self.levels[control] + by
-                return self._set(control, min(max(wanted, 0), self.highest[control]))
+                return self._set(control, min(max(self.levels[control] + by, 0), self.highest[control]))
             case SetPressure(bar):
-                if not self.independent:
-                    return {}, "this train has no independent brake"
-                self.independent_bar = bar
-                return {"independent_bar": bar}, ""
+                return self._set_independent(bar)
             case Action(name) if name in WORDS:
-                if not self.highest["brake"]:
-                    return {}, "this train has no brake control"
-                self.levels["brake"] = 0 if name == "charge" else self.highest["brake"]
-                return {"brake": name}, ""
+                return self._say(name)
         return {}, ""
+
+    def _set_independent(self, bar: float) -> tuple[dict[str, Any], str]:
+        if not self.independent:
+            return {}, "this train has no independent brake"
+        self.independent_bar = bar
+        return {"independent_bar": bar}, ""
+
+    def _say(self, word: str) -> tuple[dict[str, Any], str]:
+        if not self.highest["brake"]:
+            return {}, "this train has no brake control"
+        self.levels["brake"] = 0 if word == "charge" else self.highest["brake"]
+        return {"brake": word}, ""
 
     def _set(self, control: str, level: int) -> tuple[dict[str, Any], str]:
         highest = self.highest[control]

@@ -84,12 +84,14 @@ class Desk:
 
     def run(self) -> None:
         """Drive until the session ends or somebody stops it; what goes wrong is kept in `failure`."""
-        why = "stopped"
+        why = "failed"
         try:
-            why = self._drive()
-            self._keeper.take()
-        except BaseException as error:  # told by the thread that waits for this one
-            self.failure, why = error, "failed"
+            try:
+                why = self._drive()
+            finally:
+                self._keeper.take()
+        except BaseException as error:  # raised again by the thread that waits for this one
+            self.failure = error
         self._publish("over", {"why": why, "time_s": self._session.time_s})
 
     def _drive(self) -> str:
@@ -151,7 +153,7 @@ class Desk:
     def _tell(self) -> bool:
         """Send a frame, statistics where they are due, and return whether the session has ended."""
         self._sent += 1
-        snapshot = {**self._session.snapshot(), "damage_index": self._keeper.damage_index()}
+        snapshot = self._session.snapshot()
         pacer = self._pacer
         pace = Pace(
             lag_ms=1e3 * pacer.lag_s,
@@ -165,7 +167,7 @@ class Desk:
         now = self._clock()
         if now >= self._statistics_at:
             self._statistics_at = now + STATISTICS_S
-            self._publish("statistics", {**self._session.distributions(), "rainflow": self._keeper.cycles()})
+            self._publish("statistics", self._session.statistics())
         if now >= self._keep_at:
             self._keep_at = now + KEEP_S
             self._keeper.take()

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import hmac
 import secrets
-from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 
 from aiohttp import web
+from aiohttp.typedefs import Handler, Middleware
 
 LOOPBACK = "127.0.0.1"
 
@@ -86,10 +86,7 @@ class Guard:
         }
 
 
-Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
-
-
-def guarded(guard: Guard) -> Callable[[web.Request, Handler], Awaitable[web.StreamResponse]]:
+def guarded(guard: Guard) -> Middleware:
     """Return what refuses every request that is not from this machine's own page, before anything else looks at it."""
 
     @web.middleware

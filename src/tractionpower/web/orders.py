@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from tractionpower.web.pacing import FACTORS
 
@@ -67,30 +68,32 @@ def read_order(text: str) -> Order | None:
     >>> read_order('{"set": "horn", "level": 3}') is None
     True
     """
+    order: Order | None = None
+    match _loaded(text):
+        case {"set": str(control), "level": int(level)} if control in CONTROLS and _is_whole(level, HIGHEST_LEVEL):
+            order = SetLevel(control, level)
+        case {"step": str(control), "by": int(by)} if control in CONTROLS and type(by) is int and by in {-1, 1}:
+            order = StepLevel(control, by)
+        case {"set": "independent", "bar": int(bar) | float(bar)} if _is_pressure(bar):
+            order = SetPressure(float(bar))
+        case {"factor": int(factor)} if factor in FACTORS and not isinstance(factor, bool):
+            order = SetFactor(factor)
+        case {"do": str(name)} if name in ACTIONS:
+            order = Action(name)
+    return order
+
+
+def _loaded(text: str) -> Any:
     if len(text) > LONGEST:
         return None
     try:
-        found = json.loads(text)
+        return json.loads(text)
     except (ValueError, RecursionError):
         return None
-    if not isinstance(found, dict):
-        return None
-    match found:
-        case {"set": str(control), "level": int(level)} if control in CONTROLS and _is_whole(level, HIGHEST_LEVEL):
-            return SetLevel(control, level)
-        case {"step": str(control), "by": int(by)} if control in CONTROLS and by in {-1, 1} and _is_whole(abs(by), 1):
-            return StepLevel(control, by)
-        case {"set": "independent", "bar": int(bar) | float(bar)} if _is_pressure(bar):
-            return SetPressure(float(bar))
-        case {"factor": int(factor)} if factor in FACTORS and _is_whole(factor, FACTORS[-1]):
-            return SetFactor(factor)
-        case {"do": str(name)} if name in ACTIONS:
-            return Action(name)
-    return None
 
 
 def _is_whole(value: int, highest: int) -> bool:
-    return not isinstance(value, bool) and 0 <= value <= highest
+    return type(value) is int and 0 <= value <= highest  # True would be an int, too
 
 
 def _is_pressure(value: float) -> bool:

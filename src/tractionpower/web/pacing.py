@@ -87,8 +87,8 @@ class Pacer:
         while self._lags[0][0] < now - 1.0:
             self._lags.popleft()
         if lag > self._most_behind_s:
-            self._given_up_s += lag
-            self._due = now
+            self._given_up_s += lag - self.tick_s
+            self._due = now - self.tick_s  # the next state is due at once
 
     @property
     def lag_s(self) -> float:
