@@ -26,6 +26,7 @@ COMMANDS = [
     ["compare"],
     ["dynamics"],
     ["dynamics", "run"],
+    ["dynamics", "drive"],
     ["report"],
     ["export"],
     ["import"],

@@ -114,8 +114,8 @@ def test_a_notice_says_what_was_clipped():
 def test_statistics_and_rows_are_taken_every_second():
     drive = Drive(FakeSession(), START, 130)
     times = [now for now, kind, _ in drive.said if kind == "statistics"]
-    assert times == pytest.approx([1.0, 2.0, 3.0, 4.0, 5.0], abs=0.2)
-    assert drive.keeper.taken == 5 + 1  # the last one at the end
+    assert times == pytest.approx([0.0, 1.0, 2.0, 3.0, 4.0, 5.0], abs=0.25)
+    assert drive.keeper.taken == 6 + 1  # the last one at the end
 
 
 def test_the_end_of_a_case_ends_the_drive():

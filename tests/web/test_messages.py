@@ -55,7 +55,11 @@ def test_frequencies_of_each_distribution_add_up_to_one():
 
 
 def statistics_of(**more):
-    edges = {"speed_edges_kmh": [0.0, 10.0, 20.0], "force_edges_kn": [-10.0, 0.0, 10.0], "acceleration_edges_mps2": [-1.0, 0.0, 1.0]}
+    edges = {
+        "speed_edges_kmh": [0.0, 10.0, 20.0],
+        "force_edges_kn": [-10.0, 0.0, 10.0],
+        "acceleration_edges_mps2": [-1.0, 0.0, 1.0],
+    }
     empty = {"drive_speed": np.zeros((2, 4)), "brake_speed": np.zeros((2, 4)), "force": np.zeros(4), "acceleration": np.zeros(4)}
     return {**empty, **edges, "rainflow": [], **more}
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tractionpower.cli import drive
 from tractionpower.cli.case_call import CaseCall, CaseName, ChangesOfCase, call_case
 from tractionpower.cli.look import look_of
 from tractionpower.cli.options import Force, NoReports, ReportLanguage, Template, out_option, strict_option
@@ -25,6 +26,9 @@ app = typer.Typer(name="dynamics", help="The train as many vehicles: couplings, 
 @app.callback()
 def _of_dynamics() -> None:
     pass
+
+
+app.command("drive")(drive.drive)
 
 
 @app.command("run")
