@@ -60,6 +60,8 @@ MOST_OF_NAME = 200
 
 _SENSES = {"at_least": mark("not below"), "at_most": mark("not above")}
 
+TIME = mark("time of day")
+
 _COLUMNS = (
     Column("no.", "0"),
     Column("what is judged", "beside", 34),
@@ -72,7 +74,7 @@ _COLUMNS = (
     Column("verdict", "beside", 12, key="verdict"),
     Column("group", widest=16),
     Column("place of the worst", widest=30),
-    Column("time of day"),
+    Column(TIME),
     Column("limit", widest=18),
     Column("status of the limit", widest=22),
     Column("source of the limit", widest=46),
@@ -138,7 +140,8 @@ def add(book: Book) -> None:
         " editable value of the limits table: the check is against that value, which is no statement about a standard."
     )
     counts_row = _room_for_counts(page)
-    block = page.table(_COLUMNS, _lines(rows), frozen=True)
+    columns = [replace(column, heading=book.computed.time_heading) if column.heading == TIME else column for column in _COLUMNS]
+    block = page.table(columns, _lines(rows), frozen=True)
     _name_limits(book, page, block, rows)
     colour_words(block.sheet, block.cells("verdict"))
     book.define("acceptance_verdicts", page, block.cells("verdict"))

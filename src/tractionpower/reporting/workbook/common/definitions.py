@@ -71,22 +71,33 @@ SOURCES = {
 }
 """Standard or practice that a figure follows, by how its name begins; the first that fits."""
 
+MEANS = mark("Voltages, currents and powers are means of a time step. Without an entry under defined by: the program's own.")
+STEPS = mark(
+    "Tables that these results have, as Parquet files beside this workbook. A row of a time describes the step that begins"
+    " then; currents and powers are positive when a train or load takes them, and when a substation feeds."
+)
+DYNAMICS = (
+    mark("Times count from the start of the case. Without an entry under defined by: the program's own."),
+    mark(
+        "Tables that these results have, as Parquet files beside this workbook. A row of a time describes that instant. A"
+        " force in a"
+        " coupling is positive in tension; brakes, resistance and gradient are positive against the direction of travel."
+    ),
+)
+"""Notes of the two sheets, those of train dynamics apart."""
+
 
 def add(book: Book) -> None:
     """Add the sheets of definitions: of the key figures, and of the columns of the tables that these results have."""
-    figures = list(_figures(book))
+    figures, is_chain = list(_figures(book)), book.computed.run.get("kind") == "dynamics"
     if figures:
         page = book.page("Definitions", "Definitions of the key figures")
-        page.note("Voltages, currents and powers are means of a time step. Without an entry under defined by: the program's own.")
+        page.note(DYNAMICS[0] if is_chain else MEANS)
         page.table(_FIGURES, figures, frozen=True)
     columns = list(_columns(book))
     if columns:
         page = book.page("Columns", "Definitions of the columns of the tables")
-        page.note(
-            "Tables that these results have, as Parquet files beside this workbook. A row of a time describes the step that"
-            " begins"
-            " then; currents and powers are positive when a train or load takes them, and when a substation feeds."
-        )
+        page.note(DYNAMICS[1] if is_chain else STEPS)
         page.table(_COLUMNS, columns, frozen=True)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tractionpower.dynamics.engines import powered
 from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.common.assumption import Assumption, figure, names
 from tractionpower.reporting.workbook.common.assumptions import COLUMNS, DEFAULTS, defaults_of
@@ -45,13 +46,14 @@ def add(book: Book) -> None:
     )
     page.table(COLUMNS, [(k, *row) for k, row in enumerate(rows, 1)], frozen=True)
     case = facts.scenario.case
-    parts = facts.data.parts
+    parts, drives = facts.data.parts, powered(facts.scenario)
+    driven = [part for part, is_powered in zip(parts, drives, strict=True) if is_powered]
     defaults = [
         row
         for title, found in (
             ("run", [case.run]), ("air_brake", [case.air_brake]), ("track", [case.track]),
-            ("traction", [part.traction for part in parts if part.traction is not None]),
-            ("electric_brake", [part.electric_brake for part in parts if part.electric_brake is not None]),
+            ("traction", [part.traction for part in driven if part.traction is not None]),
+            ("electric_brake", [part.electric_brake for part in driven if part.electric_brake is not None]),
             ("brake", [part.brake for part in parts if part.brake is not None]), ("couplings", facts.scenario.couplings),
             ("vehicles", facts.scenario.vehicles),
         )
@@ -125,11 +127,11 @@ def _brakes(facts: ChainFacts) -> Iterator[Assumption]:
     laws = {part.brake.friction.law for part in braked if part.brake is not None}
     if "karwatzki" in laws:
         yield Assumption(tr("Friction of blocks over speed and force after Karwatzki."), tr("brakes"), tr("recalled"))
-    powered = [part for part in parts if part.traction is not None]
-    if powered:
+    driven = [part for part, drives in zip(parts, powered(facts.scenario), strict=True) if drives]
+    if driven:
         yield Assumption(
             tr("Tractive effort of a level is the lesser of its effort and its power over speed, unless points are given."),
-            names(part.id for part in powered), tr("of the case"),
+            names(part.id for part in driven), tr("of the case"),
         )  # fmt: skip
     yield Assumption(
         tr("The supply is not computed: traction has the power of its level at all times."), tr("powered vehicles"),

@@ -43,6 +43,11 @@ class ChainFacts(Computed):
         return tr("Simulation of the longitudinal dynamics of a train")
 
     @property
+    def time_heading(self) -> str:
+        """What times are called: they count from the start of the case."""
+        return mark("time since the start")
+
+    @property
     def verdicts(self) -> list[dict[str, Any]]:
         """Verdicts on the forces of couplings, with names for people."""
         return [self._told(verdict) for verdict in super().verdicts]

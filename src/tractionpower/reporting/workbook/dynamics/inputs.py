@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from tractionpower.dynamics.engines import powered
 from tractionpower.model.dynamics.case import Case, CasePart
 from tractionpower.model.dynamics.coupling import Coupling, Gear
 from tractionpower.reporting.texts import mark, recorded, tr
@@ -28,15 +29,20 @@ _GEARS = (
 )
 
 _TRAIN = (
-    Column("no.", "0"),
     Column("vehicle", widest=30),
     Column("kind", "beside", widest=18),
-    Column("load [%]", "general"),
+    Column("powered", "beside"),
+    Column("coupling behind", "beside", widest=60),
     Column("mass with load [t]", "0.0", key="mass"),
     Column("length [m]", "0.00", key="length"),
-    Column("powered", "beside"),
+    Column("load [%]", "general"),
     Column("air brake", "beside"),
-    Column("coupling behind", "beside", widest=30),
+)
+_SOURCES = (
+    Column("vehicle", widest=30),
+    Column("name", "beside", widest=40),
+    Column("how many", "0"),
+    Column("source", "beside", widest=100),
 )
 _COUPLINGS = (
     Column("coupling", widest=30),
@@ -93,31 +99,36 @@ def _train(book: Book, facts: ChainFacts) -> None:
     page.section("Vehicles")
     page.table(_TRAIN, list(_vehicles(facts)))
     page.section("Sources of the vehicles")
-    used = sorted({part.id for part in facts.data.parts})
-    told = ((name, facts.scenario.vehicle(name).source or tr("not told")) for name in used)
-    page.table((Column("no.", "0"), Column("vehicle", widest=30), Column("source", "beside", widest=100)),
-               [(k, *row) for k, row in enumerate(told, 1)])  # fmt: skip
+    parts, drives = facts.data.parts, powered(facts.scenario)
+    used = [facts.scenario.vehicle(name) for name in dict.fromkeys(part.id for part in parts)]
+    count = [part.id for part in parts]
+    rows = [(vehicle.id, vehicle.name, count.count(vehicle.id), vehicle.source or tr("not told")) for vehicle in used]
+    page.table(_SOURCES, rows)
+    driven = tuple(part for part, is_powered in zip(parts, drives, strict=True) if is_powered)
     for field, title in _GEARS:
-        for gear, names in _distinct(facts.data.parts, field):
+        for gear, names in _distinct(parts if field == "brake" else driven, field):
             more = "" if len(names) <= MOST_NAMES else " …"
-            words = tr(title, vehicles=f"{', '.join(names[:MOST_NAMES])}{more}")
-            page.section(words)
+            page.section(tr(title, vehicles=f"{', '.join(names[:MOST_NAMES])}{more}"))
             page.table(SETTINGS, list(setting_rows(gear)))
 
 
 def _vehicles(facts: ChainFacts) -> Iterator[tuple[Any, ...]]:
-    parts = facts.data.parts
-    for number, part in enumerate(parts, 1):
+    parts, drives = facts.data.parts, powered(facts.scenario)
+    names = [f"{number} {part.id}" for number, part in enumerate(parts, 1)]
+    for number, (part, name, drive) in enumerate(zip(parts, names, drives, strict=True), 1):
         vehicle = facts.scenario.vehicle(part.id)
         mass = vehicle.mass_t + vehicle.load_t * part.load_percent / 100.0
-        powered = (
-            part.powered and (vehicle.drive is not None or part.traction is not None) and vehicle.kind not in ("wagon", "coach")
-        )
         braked = part.brake is not None and part.brake.in_use
         yield (
-            number, part.id, recorded(vehicle.kind.replace("_", " ")), part.load_percent, mass, vehicle.length_m,
-            tr("yes") if powered else tr("no"), tr("yes") if braked else tr("no"), part.coupling if number < len(parts) else "–",
-        )  # fmt: skip
+            name,
+            recorded(vehicle.kind.replace("_", " ")),
+            tr("yes") if drive else tr("no"),
+            part.coupling if number < len(parts) else "–",
+            mass,
+            vehicle.length_m,
+            part.load_percent,
+            tr("yes") if braked else tr("no"),
+        )
 
 
 def _distinct(parts: tuple[CasePart, ...], field: str) -> list[tuple[BaseModel, list[str]]]:

@@ -38,7 +38,8 @@ def add(book: Book, drawn: Drawn) -> None:
         return
     page = book.page("Distributions", "How often what came about")
     page.note(
-        "Shares of the whole time, summed up in every step. Classes in which no time was spent are left out at the ends; an end"
+        "Shares of the whole time, summed up in every step. Levels and classes without any time are left out, classes at"
+        " the ends alone; an end"
         " without a number is open. Sums are formulas and come to 100 %."
     )
     for which, title in JOINT.items():
@@ -61,6 +62,8 @@ def _joint(page: Page, data: Any, which: str, title: str) -> None:
     columns.append(Column("sum [%]", "0.00", key="sum"))
     rows = []
     for level, shares in enumerate(100.0 * np.nan_to_num(shown)):
+        if not shares.any():
+            continue
         cells = [share or None for share in shares.tolist()]
         rows.append((level, *cells, Formula(f"SUM({{{keys[0]}}}:{{{keys[-1]}}})", float(shares.sum()))))
     block = page.table(columns, rows)

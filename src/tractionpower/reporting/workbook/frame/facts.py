@@ -84,6 +84,11 @@ class Computed(Subject):
         return super().study
 
     @property
+    def time_heading(self) -> str:
+        """What times are called, English."""
+        return mark("time of day")
+
+    @property
     def part(self) -> str:
         """What part of the run this is, in words; empty for all of it."""
         return selection_words(self.run)
