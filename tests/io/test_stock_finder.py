@@ -87,3 +87,12 @@ def test_many_known_ids_are_shortened(put):
     for number in range(40):
         put("work", f"v{number:02}.yaml")
     assert "... (40 in all)" in not_found("vehicles", "zzz", None, "", "").remedy
+
+
+def test_couplings_are_found_and_told_like_vehicles(put):
+    file = put("work", "hook.yaml", "couplings")
+    assert find_rolling_stock("couplings", "hook", None) == file
+    assert known_rolling_stock("couplings", None) == ["hook"]
+    told = not_found("couplings", "hok", None, "case.coupling", "case.yaml:3")
+    assert (told.code, told.remedy) == ("unknown_coupling", "did you mean hook?")
+    assert told.found == "there is no coupling 'hok'"
