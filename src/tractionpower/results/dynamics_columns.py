@@ -67,8 +67,8 @@ DYNAMICS_TABLES: dict[str, tuple[Column, ...]] = {
     ),
     "rainflow": (
         _column("coupling", "Coupling: numbers of the vehicles that it joins.", "text"),
-        _column("range_kn", "Range of the cycles, to 0.1 kN.", "f8"),
-        _column("mean_kn", "Mean of the cycles, to 0.1 kN.", "f8"),
+        _column("range_kn", "Range of the cycles, in classes of 5 kN: the upper end of the class.", "f8"),
+        _column("mean_kn", "Mean of the cycles, in classes of 25 kN: the middle of the class.", "f8"),
         _column("cycles", "How many; half cycles count 0.5.", "f8"),
     ),
     "point_masses": (
