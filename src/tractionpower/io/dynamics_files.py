@@ -16,10 +16,11 @@ from tractionpower.io.text_files import Source
 from tractionpower.io.wording import did_you_mean, shown
 from tractionpower.model.base import Declaration
 from tractionpower.model.dynamics.case import Case, DynamicsScenario
+from tractionpower.model.dynamics.stations import StationsCase
 
 __all__ = ["LoadedCase", "find_case", "load_case", "read_case", "shipped_cases"]
 
-KINDS: dict[str, type[Declaration]] = {"vehicles": Case}
+KINDS: dict[str, type[Declaration]] = {"vehicles": Case, "stations": StationsCase}
 """What a case file declares, by its ``kind``. One that is no train as many vehicles stands for itself."""
 
 ROOT = "case"

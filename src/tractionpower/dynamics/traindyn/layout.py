@@ -12,8 +12,8 @@ from tractionpower.model.dynamics.stations import CaseStation, StationsCase
 HOME_M = 50.0
 """A train that has no track yet waits so far before a station [m] (assumed)."""
 
-SHORT_M = 10.0
-"""A train that stops stands so far before the end of its track [m] (assumed)."""
+SHORT_M = 80.0
+"""A train that stops stands so far before its track joins another one, in the clear [m] (assumed)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ def _station_track(station: CaseStation, track: str) -> Polyline:
     k = station.tracks.index(track)
     y = (k + 1) // 2 * station.track_distance_m * (1.0 if k % 2 else -1.0)
     low, high = station.from_m, station.to_m
-    lead = min(0.2 * (high - low), 2.0 * abs(y))
+    lead = min(0.2 * (high - low), 0.9 * SHORT_M)
     points = ((low, 0.0), (low + lead, y), (high - lead, y), (high, 0.0)) if y else ((low, 0.0), (high, 0.0))
     return Polyline(f"{station.id} {track}", points, high - low)
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
+import pyarrow as pa
 
 from tractionpower.dynamics.traindyn.core import TrainDynamics
 from tractionpower.dynamics.traindyn.layout import lay_out
@@ -16,9 +16,6 @@ from tractionpower.kernels.point_mass import STATES
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.tables import make_table
-
-if TYPE_CHECKING:
-    from tractionpower.dynamics.traindyn.stations import Writer
 
 EVENTS = ("entered", "track_given", "arrival", "departure", "passing", "left", "still_there")
 """Kinds of events of trains on a line with stations."""
@@ -38,20 +35,11 @@ NUMBERS: Values = {
 """Columns of a train that are numbers."""
 
 
-@dataclass(frozen=True, slots=True)
-class StationsOutcome:
-    """What a case of stations has come to.
+class Writer(Protocol):
+    """Takes the rows of tables."""
 
-    Attributes
-    ----------
-    run
-        What ``run.json`` says of it besides files.
-    key_figures
-        Its key figures, as they are written.
-    """
-
-    run: dict[str, Any]
-    key_figures: list[dict[str, Any]]
+    def append(self, table: str, rows: pa.Table) -> None:
+        """Take rows of a table."""
 
 
 class StationRecorder:
@@ -78,6 +66,7 @@ class StationRecorder:
         self._came: dict[str, float] = {}
         self._journeys: list[float] = []
         self._waits: list[float] = []
+        self._stalled: list[str] = []
         self._counts = dict.fromkeys(EVENTS, 0)
         self._fastest_kmh = 0.0
 
@@ -105,6 +94,8 @@ class StationRecorder:
             self._waits.append(waited_s)
         if kind == "entered":
             self._came[train.name] = time_s
+        elif kind == "still_there" and train.is_stalled:
+            self._stalled.append(train.name)
         elif kind == "left":
             self._journeys.append(time_s - self._came[train.name])
 
@@ -135,14 +126,14 @@ class StationRecorder:
             self._writer.append("station_events", make_table("station_events", columns))
         self._rows, self._events = [], []
 
-    def outcome(self, end_s: float) -> StationsOutcome:
-        """Return what has come out when the run ended at a time [s]."""
+    def key_figures(self) -> list[dict[str, Any]]:
+        """Return the key figures, as they are written."""
         left, there = self._counts["left"], self._counts["still_there"]
-        never = self._case.traffic.trains - left - there
+        never = self._case.traffic.trains - self._counts["entered"]
         figures = [
             KeyFigure("trains_that_left", float(left), definition="trains that have run the whole line"),
             KeyFigure("trains_still_there", float(there), definition="trains on the line at the end of the run"),
-            KeyFigure("trains_that_did_not_come", float(never), definition="trains that had no place on the line, or no time"),
+            KeyFigure("trains_that_did_not_come", float(never), definition="trains that the line, or the time, had no room for"),
             KeyFigure("highest_speed_kmh", self._fastest_kmh, definition="highest speed of all rows"),
             KeyFigure(
                 "waiting_time_s", sum(self._waits, 0.0), definition="time that trains waited for a track or the line ahead"
@@ -153,5 +144,11 @@ class StationRecorder:
             figures.append(
                 KeyFigure("mean_running_time_s", mean, definition="mean time from entering to leaving, stops included")
             )
-        run = {"status": "complete", "simulated_s": float(end_s), "trains": self._case.traffic.trains, "seed": self._case.seed}
-        return StationsOutcome(run, [figure.as_dict() for figure in figures])
+        return [figure.as_dict() for figure in figures]
+
+    def notes(self) -> list[str]:
+        """Return in words what a reader has to know: trains that have not left."""
+        there, never = self._counts["still_there"], self._case.traffic.trains - self._counts["entered"]
+        told = [f"trains still on the line at the end: {there} ({', '.join(self._stalled)} cannot start)" if self._stalled else
+                f"trains still on the line at the end: {there}"] if there else []  # fmt: skip
+        return told + ([f"trains that did not come onto the line: {never}"] if never else [])

@@ -6,14 +6,12 @@ is free. Tracks and pieces of line are SimPy resources for one train at a time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
-from typing import TYPE_CHECKING, Any, Protocol
-
-import pyarrow as pa
+from collections.abc import Generator
+from typing import TYPE_CHECKING, Any
 
 from tractionpower.dynamics.traindyn.core import TrainDynamics
 from tractionpower.dynamics.traindyn.layout import HOME_M, SHORT_M, Layout, add_track_data, lay_out
-from tractionpower.dynamics.traindyn.station_recorder import StationRecorder, StationsOutcome
+from tractionpower.dynamics.traindyn.station_recorder import StationRecorder
 from tractionpower.dynamics.traindyn.traffic import Arrival, traffic
 from tractionpower.dynamics.traindyn.train import DynTrain
 from tractionpower.errors import UsageError
@@ -24,50 +22,7 @@ if TYPE_CHECKING:
     from simpy import Resource
     from simpy.resources.resource import Request
 
-_BLOCK_S = 600.0
-"""Simulated time between two calls of progress [s]."""
-
-Update = Callable[[int, int], object]
 Step = Generator["simpy.Event", Any, None]
-
-
-class Writer(Protocol):
-    """Takes the rows of tables."""
-
-    def append(self, table: str, rows: pa.Table) -> None:
-        """Take rows of a table."""
-
-
-def run_stations(case: StationsCase, writer: Writer, update: Update | None = None) -> StationsOutcome:
-    """Run a case of stations; its tables ``point_masses`` and ``station_events`` go to `writer`.
-
-    Parameters
-    ----------
-    case
-        The case, free of errors (`check_stations`).
-    writer
-        Takes the tables.
-    update
-        Called now and then with the seconds done and those in all.
-
-    Raises
-    ------
-    UsageError
-        If SimPy is not installed.
-    """
-    simpy = import_simpy()
-    env = simpy.Environment()
-    model = StationsModel(case, env, StationRecorder(case, writer))
-    total = case.run.duration_s
-    while env.now < total and not model.over.processed:
-        env.run(until=model.over | env.timeout(min(_BLOCK_S, total - env.now)))
-        model.recorder.flush()
-        if update is not None:
-            update(round(env.now), round(total))
-    model.finish()
-    if update is not None:
-        update(round(total), round(total))
-    return model.recorder.outcome(env.now)
 
 
 def import_simpy() -> Any:

@@ -1,0 +1,112 @@
+"""The run of a case of stations: it is checked, simulated in blocks, and its rows go to a writer as they come."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+from tractionpower.dynamics.run import Outcome, Progress
+from tractionpower.dynamics.traindyn.station_checks import check_stations
+from tractionpower.dynamics.traindyn.station_recorder import StationRecorder, Writer
+from tractionpower.dynamics.traindyn.stations import StationsModel, import_simpy
+from tractionpower.errors import raise_errors
+from tractionpower.model.dynamics.stations import StationsCase
+from tractionpower.results.kept import input_hash_of
+from tractionpower.results.store import RunWriter
+from tractionpower.results.versions import versions
+
+KIND = "stations"
+"""What ``run.json`` calls such results."""
+
+BLOCK_S = 600.0
+"""Simulated time between two calls of progress [s]."""
+
+
+class StationsRun:
+    """One run of a case of stations.
+
+    Parameters
+    ----------
+    scenario
+        The case.
+    writer
+        Takes the rows of the tables ``point_masses`` and ``station_events``.
+    study
+        Name of the case, for ``run.json``.
+
+    Raises
+    ------
+    InputError
+        With all problems of the case.
+    UsageError
+        If SimPy is not installed.
+    """
+
+    def __init__(self, scenario: StationsCase, writer: Writer, study: str = "") -> None:
+        problems = check_stations(scenario)
+        raise_errors(problems)
+        self.scenario, self.study, self.warnings = scenario, study, tuple(problems)
+        self._env = import_simpy().Environment()
+        self._recorder = StationRecorder(scenario, writer)
+        self._model = StationsModel(scenario, self._env, self._recorder)
+        self._started = time.perf_counter()
+
+    def execute(self, progress: Progress | None = None) -> Outcome:
+        """Run until all trains have left, or to the end of the case; progress is told in simulated seconds."""
+        env, over, total = self._env, self._model.over, self.scenario.run.duration_s
+        while env.now < total and not over.processed:
+            env.run(until=over | env.timeout(min(BLOCK_S, total - env.now)))
+            self._recorder.flush()
+            if progress is not None:
+                progress(round(env.now), round(total))
+        self._model.finish()
+        if progress is not None:
+            progress(round(total), round(total))
+        return self.outcome("complete")
+
+    def outcome(self, status: str) -> Outcome:
+        """Return what is known of the run up to now."""
+        case = self.scenario
+        run = {
+            "format": 1,
+            "status": status,
+            "kind": KIND,
+            "study": self.study,
+            "name": case.name,
+            "input_hash": input_hash_of(case),
+            "seed": case.seed,
+            "versions": versions(),
+            "wall_seconds": time.perf_counter() - self._started,
+            "warnings": [str(problem) for problem in self.warnings],
+            "verdicts": [],
+            "ledgers": {},
+            "notes": self._recorder.notes(),
+            "method": case.run.method,
+            "period_s": case.run.period_s,
+            "end_s": float(self._env.now),
+            "trains": case.traffic.trains,
+        }
+        return Outcome(run, self._recorder.key_figures(), self.warnings)
+
+    def keep_unfinished(self, writer: RunWriter) -> Path:
+        """Keep what an interrupted run has computed; return where it is."""
+        self._recorder.flush()
+        unfinished = self.outcome("interrupted")
+        return writer.keep_unfinished(unfinished.run, unfinished.key_figures)
+
+
+def run_stations(scenario: StationsCase, writer: Writer, study: str = "", progress: Progress | None = None) -> Outcome:
+    """Run a case of stations and return what came of it; a `RunWriter` completes its folder with that.
+
+    Raises
+    ------
+    InputError
+        With all problems of the case.
+    UsageError
+        If SimPy is not installed.
+    """
+    run = StationsRun(scenario, writer, study)
+    outcome = run.execute(progress)
+    if isinstance(writer, RunWriter):
+        writer.finish(outcome.run, outcome.key_figures)
+    return outcome
