@@ -55,7 +55,7 @@ class RainflowCounter:
         self._waiting: list[Array] = []
 
     def add(self, turns: Array) -> None:
-        """Add turning points: records of `tractionpower.kernels.chain_tables.TURN`, in the order in which they came.
+        """Add turning points: records of `tractionpower.kernels.chain_state.TURN`, in the order in which they came.
 
         The first one of a series is the force with which it begins.
         """
