@@ -63,6 +63,17 @@ def test_a_second_setting_at_the_same_time_replaces_the_first():
     assert driven.state.movers["v_mps"] == pytest.approx(straight.state.movers["v_mps"])
 
 
+def test_two_controls_set_at_the_same_time_both_hold():
+    driven = DrivenSession(started())
+    driven.advance(1.0)
+    driven.set(brake=5)
+    driven.set(drive=0)
+    driven.set(electric=4)
+    driven.advance(2.0)
+    now = driven.snapshot()
+    assert (now["drive"], now["brake"], now["electric_percent"]) == (0, 5, 50.0)
+
+
 def test_many_settings_find_room():
     driven = DrivenSession(started())
     for k in range(200):

@@ -28,11 +28,13 @@ def append_control(case: Case, state: ChainState, setting: Setting) -> ChainStat
     drive, brake, electric, independent = setting
     ledger = state.ledger[0]
     now = float(ledger["time_s"])
-    ledger["control_rows"] = ledger["control_row"] + 1
+    # what was set a moment ago may not have been taken over yet
+    last = int(np.searchsorted(state.controls["at_s"][: ledger["control_rows"]], now, side="right")) - 1
+    ledger["control_rows"] = last + 1
     pipe_rows = int(np.searchsorted(state.pipe["from_s"][: ledger["pipe_rows"]], now, side="right"))
     ledger["pipe_rows"] = max(pipe_rows, 1)
     state = state._replace(controls=_with_room(state.controls, ledger["control_rows"]), pipe=_with_room(state.pipe, pipe_rows))
-    state.controls[ledger["control_rows"]] = state.controls[ledger["control_row"]]
+    state.controls[ledger["control_rows"]] = state.controls[last]
     row = state.controls[ledger["control_rows"]]
     row["at_s"] = now
     state.controls["at_s"][ledger["control_rows"] + 1 :] = np.inf  # rows that are not in use never come
