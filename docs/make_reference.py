@@ -29,6 +29,7 @@ from tractionpower.kernels.train_tables import LIMITED_BY, PHASES
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.dynamics.case import Case
 from tractionpower.model.dynamics.coupling import Coupling
+from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.model.limits import Limit, common_limits
 from tractionpower.model.line import Line
 from tractionpower.model.measured import MeasuredMap
@@ -59,6 +60,7 @@ FILES = {
     "map of a measurement (YAML)": MeasuredMap,
     "report.yaml (template of reports)": Report,
     "case.yaml (train dynamics)": Case,
+    "case.yaml (train dynamics, kind: stations)": StationsCase,
     "rollingstock/couplings/ID.yaml": Coupling,
 }
 INPUTS = """Units stand in the names. A list may be the name of a CSV file instead, relative to the file that names it; its

@@ -106,6 +106,14 @@ def test_an_unknown_kind(write):
     assert problems[0].remedy == "did you mean vehicles?"
 
 
+def test_a_case_with_stations_is_told_by_its_own_declaration(write):
+    _, problems = read_case(write(case="format: 1\nkind: stations\nname: Line\nlength_m: -1\nvehicles: []\n"))
+    told = {problem.path: problem.code for problem in problems}
+    assert told["case.length_m"] == "out_of_bounds"
+    assert told["case.vehicles"] == "unknown_key"
+    assert told["case.stations"] == "missing_key"
+
+
 @pytest.mark.parametrize("text", ["", "- a\n", "a: [\n", "format: 2\nkind: new\n"])
 def test_what_is_no_case(write, text):
     loaded, problems = read_case(write(case=text))

@@ -20,7 +20,7 @@ from tractionpower.model.dynamics.stations import StationsCase
 
 __all__ = ["LoadedCase", "find_case", "load_case", "read_case", "shipped_cases"]
 
-KINDS: dict[str, type[Declaration]] = {"vehicles": Case, "stations": StationsCase}
+KINDS: dict[str, type[Case] | type[StationsCase]] = {"vehicles": Case, "stations": StationsCase}
 """What a case file declares, by its ``kind``. One that is no train as many vehicles stands for itself."""
 
 ROOT = "case"
@@ -34,7 +34,7 @@ class LoadedCase:
     Attributes
     ----------
     scenario
-        What is computed: a `DynamicsScenario`, or the declaration itself of a case of another kind.
+        What is computed: a `DynamicsScenario`, or the declaration itself of a case with stations.
     provenance
         File and line of every model path.
     file
@@ -47,7 +47,7 @@ class LoadedCase:
         Where it was found, in words.
     """
 
-    scenario: Declaration
+    scenario: DynamicsScenario | StationsCase
     provenance: Provenance
     file: Path
     name: str
@@ -89,7 +89,7 @@ def read_case(case: str | Path) -> tuple[LoadedCase | None, list[Problem]]:
     return LoadedCase(scenario, provenance, found.file, found.name, tuple(problems), found.origin), problems
 
 
-def _read_yaml(reader: Reader, found: FoundCase) -> tuple[Declaration | None, Mark]:
+def _read_yaml(reader: Reader, found: FoundCase) -> tuple[DynamicsScenario | StationsCase | None, Mark]:
     source = Source(found.file, found.file.name, ROOT)
     root = Mark(source.label)
     # The kind decides what the file declares; the glance's own problems are told by the reading that follows.
@@ -100,22 +100,21 @@ def _read_yaml(reader: Reader, found: FoundCase) -> tuple[Declaration | None, Ma
         remedy = did_you_mean(str(kind), KINDS)
         reader.problems.append(Problem("bad_choice", f"{ROOT}.kind", shown(kind), ", ".join(KINDS), remedy, place=place))
         return None, root
-    model = KINDS[kind]
-    content = reader.read(source, model)
+    content = reader.read(source, KINDS[kind])
     if content is None:
         return None, root
     root.children[ROOT] = content.mark
-    declared = reader.validated(model, content)
-    return (_resolved(reader, found, content, root, declared) if model is Case else declared), root
+    if KINDS[kind] is StationsCase:
+        return reader.validated(StationsCase, content), root
+    return _resolved(reader, found, content, root), root
 
 
-def _resolved(
-    reader: Reader, found: FoundCase, content: Input, root: Mark, declared: Declaration | None
-) -> DynamicsScenario | None:
+def _resolved(reader: Reader, found: FoundCase, content: Input, root: Mark) -> DynamicsScenario | None:
+    case = reader.validated(Case, content)
     # Also of a broken case the vehicles are read, so that their problems are told in the same breath.
     stock = RollingStock(reader, found.file.parent)
     stock.add_case(content)
     root.children |= {"vehicles": stock.vehicles.mark(), "couplings": stock.couplings.mark()}
-    if not isinstance(declared, Case) or reader.has_errors:
+    if case is None or reader.has_errors:
         return None
-    return DynamicsScenario(case=declared, vehicles=stock.vehicles.sorted(), couplings=stock.couplings.sorted())
+    return DynamicsScenario(case=case, vehicles=stock.vehicles.sorted(), couplings=stock.couplings.sorted())

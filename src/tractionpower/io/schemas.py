@@ -11,6 +11,7 @@ from tractionpower.io.wording import did_you_mean, shown
 from tractionpower.model.conductors import Conductor
 from tractionpower.model.dynamics.case import Case
 from tractionpower.model.dynamics.coupling import Coupling
+from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.model.limits import Limit
 from tractionpower.model.line import Line
 from tractionpower.model.measured import MeasuredMap
@@ -35,6 +36,7 @@ _MODELS: dict[str, type[BaseModel]] = {
     "measured": MeasuredMap,
     "report": Report,
     "case": Case,
+    "stations": StationsCase,
     "coupling": Coupling,
 }
 
