@@ -164,7 +164,7 @@ def test_figure_9_a_loop_with_a_dead_zone_between_cars_3_and_4(run):
 
 def test_the_works_of_the_run_add_up(run):
     gap, size = run.ledger_gap(0.0)
-    assert abs(gap) < 2e-3 * size
+    assert abs(gap) < 1e-9 * size
 
 
 def test_the_row_of_4_percent_is_met_by_a_train_that_starts_there(tmp_path):

@@ -147,6 +147,10 @@ def test_everything_wrong_in_all_files_is_told_at_once(read):
         "TrackProfile.csv": TABLE_6.replace("Curve,2 Deg", "Curve,2 %"),
         "TrainConsist.csv": CONSIST.replace("Car", "Cart"),
     }
+    _, problems = read(changed, "Wedge angel = 3\nMu = much\n")
+    assert [problem.place for problem in problems] == [
+        "Simulation.ini:14", "Simulation.ini:15", "TrainConsist.csv:3", "TrackProfile.csv:5", "DynamicParameter.csv:2",
+    ]  # fmt: skip
     loaded, problems = read(changed, "Gross Braking Ratio = 0.5\nNet Braking Ratio = 0.1\nRecord every = 0.001\n")
     assert loaded is None
     assert [problem.place for problem in problems if problem.severity == "error"] == [

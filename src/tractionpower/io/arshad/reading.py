@@ -36,10 +36,13 @@ def read_arshad(reader: Reader, found: FoundCase) -> tuple[DynamicsScenario | No
     settings = read_settings(reader, Source(found.file, found.file.name, ""))
     if settings is None:
         return None, root
+    settings_failed = reader.has_errors
     consist = read_consist(reader, _named(reader, settings, found.file, "consist"), settings)
     profile = read_track(reader, _named(reader, settings, found.file, "track"))
     source = _named(reader, settings, found.file, "commands")
     commands, mark = read_commands(reader, source, int(settings.number("notches")))
+    if settings_failed:
+        return None, root
     case, case_mark = _case_data(reader, settings, found, consist, profile)
     case["commands"], case_mark.children["commands"] = commands, mark
     coupling, coupling_mark = coupling_data(settings, reader.problems)

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from tractionpower.errors import InputError, Problem
-from tractionpower.io.arshad.keys import KEYS, Key
+from tractionpower.io.arshad.keys import FILLED, KEYS, PRINTED, Key
 from tractionpower.io.arshad.units import Told, read_quantity
 from tractionpower.io.documents import Reader
 from tractionpower.io.provenance import Mark
@@ -86,9 +86,10 @@ def spelling_of(name: str) -> str:
 
 
 def read_settings(reader: Reader, source: Source) -> Settings | None:
-    """Read a configuration; None if it has errors, which `reader` collects.
+    """Read a configuration; None if it cannot be read at all. `reader` collects what is wrong.
 
-    The keys may stand under any sections, or under none as in the paper. ``#`` and ``;`` begin a comment.
+    Where a value is wrong the default stands in for it, so that the files that it names can be read in the same
+    breath. The keys may stand under any sections, or under none as in the paper. ``#`` and ``;`` begin a comment.
     """
     try:
         entries = _entries(source)
@@ -107,13 +108,13 @@ def read_settings(reader: Reader, source: Source) -> Settings | None:
             problems.append(source.problem("missing_key", told, remedy=f"add a line {key.spellings[0]} = ..."))
         settings.values[key.name] = _default(settings, key)
     reader.problems += problems
-    return settings if not problems else None
+    return settings
 
 
 def _take(settings: Settings, source: Source, written: str, text: str, line: int) -> Iterable[Problem]:
     key = _BY_SPELLING.get(written)
     if key is None:
-        known = [key.spellings[0] for key in KEYS]
+        known = [key.spellings[0] for key in PRINTED] + [f"and {len(FILLED)} keys of ours (docs/dynamics-arshad.md)"]
         remedy = did_you_mean(written, [spelling for key in KEYS for spelling in key.spellings])
         return [source.problem("unknown_key", f"the key {shown(written)}", ", ".join(known), remedy, line)]
     if key.name in settings.lines:
@@ -121,7 +122,7 @@ def _take(settings: Settings, source: Source, written: str, text: str, line: int
         return [source.problem("duplicate_key", found, "each key once", "delete one", line)]
     settings.lines[key.name], settings.texts[key.name] = line, text
     value = _value(key, text)
-    settings.values[key.name] = None if isinstance(value, Told) else value
+    settings.values[key.name] = _default(settings, key) if isinstance(value, Told) else value
     if isinstance(value, Told):
         place = f"{source.label}:{line}"
         return [Problem("bad_value", key.spellings[0], value.found, value.allowed, value.remedy, place=place)]
