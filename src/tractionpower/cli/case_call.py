@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -31,8 +31,8 @@ class CaseCall(Call):
     loaded: LoadedCase
 
 
-def call_case(case: str, changes: Sequence[str], out: Path | None, look: Look) -> CaseCall:
-    """Load a case and change it; results go to `out`, or into ``reports/dynamics-<case>``.
+def call_case(case: str, changes: Sequence[str], out: Path | None, look: Look, run: Mapping[str, Any] | None = None) -> CaseCall:
+    """Load a case and change it, also keys of its `run`; results go to `out`, or into ``reports/dynamics-<case>``.
 
     Raises
     ------
@@ -46,8 +46,11 @@ def call_case(case: str, changes: Sequence[str], out: Path | None, look: Look) -
     from tractionpower.model.dynamics.case import DynamicsScenario
 
     loaded = load_case(case)
-    scenario = apply_changes(loaded.scenario, changes) if changes else loaded.scenario
+    of_vehicles = isinstance(loaded.scenario, DynamicsScenario)
+    where = "case.run" if of_vehicles else "run"
+    every = [*changes, *(f"{where}.{name}={value}" for name, value in (run or {}).items() if value is not None)]
+    scenario = apply_changes(loaded.scenario, every) if every else loaded.scenario
     look.check_own()
-    kind = "dynamics" if isinstance(scenario, DynamicsScenario) else str(getattr(scenario, "kind", ""))
+    kind = "dynamics" if of_vehicles else str(getattr(scenario, "kind", ""))
     folder = out if out is not None else Path("reports") / f"dynamics-{loaded.name}"
     return CaseCall(loaded, scenario, loaded.name, folder, kind, look)

@@ -11,6 +11,7 @@ import typer
 
 from tractionpower.cli import drive
 from tractionpower.cli.case_call import CaseCall, CaseName, ChangesOfCase, call_case
+from tractionpower.cli.dynamics_stations import run_stations_case
 from tractionpower.cli.look import look_of
 from tractionpower.cli.options import Force, NoReports, ReportLanguage, Template, out_option, strict_option
 from tractionpower.cli.progress import steps_bar
@@ -53,10 +54,10 @@ def run(
     """Compute a case of train dynamics and write its results."""
     from tractionpower.cli.console import warn_of_compilation
 
-    options = {"method": method, "step_s": step_s}
-    own = [f"case.run.{name}={value}" for name, value in options.items() if value is not None]
-    call = call_case(case, [*(changes or ()), *own], out, look_of(template, language))
+    call = call_case(case, changes or (), out, look_of(template, language), {"method": method, "step_s": step_s})
     call.greet()
+    if call.kind == "stations":
+        run_stations_case(call, force=force, no_reports=no_reports)
     warn_of_compilation("advance_chain")
     outcome, writer = _compute(call, force=force)
     _show(outcome)

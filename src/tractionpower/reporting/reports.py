@@ -19,6 +19,9 @@ WORKBOOK = "report.xlsx"
 WORKBOOKS = {"compare": "compare.xlsx"}
 """Other names of the workbook, by what ``run.json`` says that results are."""
 
+WITHOUT_WORKBOOK = frozenset({"stations"})
+"""Kinds of results that have figures only."""
+
 PARTS = frozenset({"workbook", "figures"})
 """Parts of the reports that can be written alone."""
 
@@ -52,7 +55,7 @@ def write_reports(
             hindrances += hindrance
         except OSError as error:
             hindrances.append(f"figures cannot be written into {folder / FIGURES}: {reason_of(error)}")
-    if "workbook" in parts:
+    if "workbook" in parts and kind not in WITHOUT_WORKBOOK:
         from tractionpower.reporting.workbook import write_workbook
 
         workbook = folder / WORKBOOKS.get(kind, WORKBOOK)

@@ -14,6 +14,7 @@ from tractionpower.reporting.figures.base.drawing import FORMATS, files_of, remo
 from tractionpower.reporting.figures.dynamics import of_chain
 from tractionpower.reporting.figures.many import compare_figures, sweep_figures
 from tractionpower.reporting.figures.many.outage_map import MAP
+from tractionpower.reporting.figures.stations import of_stations
 from tractionpower.results.results import Results
 
 FigureWriter = Callable[[Results, Any, Path], list[Path]]
@@ -27,6 +28,7 @@ def figure_writer(kind: str) -> FigureWriter:
         "sweep": sweep_figures.write_sweep_figures,
         "compare": compare_figures.write_compare_figures,
         "dynamics": of_chain.write_chain_figures,
+        "stations": of_stations.write_station_figures,
     }
     return writers.get(kind, of_run.write_figures)
 
@@ -34,7 +36,7 @@ def figure_writer(kind: str) -> FigureWriter:
 def figure_names() -> tuple[str, ...]:
     """Return the names of all figures; those of groups and folders stand for more than one."""
     of_many = (*of_run.OUTAGES, MAP, *sweep_figures.NAMES, *compare_figures.NAMES)
-    return (*of_run.GRAPHS, *of_run.SINGLE, *of_run.GROUPED, of_run.TRAINS, *of_many, *of_chain.NAMES)
+    return (*of_run.GRAPHS, *of_run.SINGLE, *of_run.GROUPED, of_run.TRAINS, *of_many, *of_chain.NAMES, *of_stations.NAMES)
 
 
 def unknown_names(chosen: Sequence[str], scenario: Scenario | DynamicsScenario) -> list[str]:
