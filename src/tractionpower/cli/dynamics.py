@@ -11,14 +11,15 @@ import typer
 
 from tractionpower.cli import drive
 from tractionpower.cli.case_call import CaseCall, CaseName, ChangesOfCase, call_case
-from tractionpower.cli.dynamics_stations import run_stations_case
 from tractionpower.cli.look import look_of
+from tractionpower.cli.messages import tell
 from tractionpower.cli.options import Force, NoReports, ReportLanguage, Template, out_option, strict_option
 from tractionpower.cli.progress import steps_bar
-from tractionpower.cli.study_call import exit_code, keeping
+from tractionpower.cli.study_call import exit_code
 
 if TYPE_CHECKING:
     from tractionpower.dynamics.run import CaseRun, Outcome
+    from tractionpower.dynamics.traindyn.stations_run import StationsRun
     from tractionpower.results.store import RunWriter
 
 app = typer.Typer(name="dynamics", help="The train as many vehicles: couplings, air brake, a driver.", no_args_is_help=True)
@@ -53,36 +54,40 @@ def run(
 ) -> None:
     """Compute a case of train dynamics and write its results."""
     from tractionpower.cli.console import warn_of_compilation
+    from tractionpower.cli.dynamics_summary import show
 
     call = call_case(case, changes or (), out, look_of(template, language), {"method": method, "step_s": step_s})
     call.greet()
-    if call.kind == "stations":
-        run_stations_case(call, force=force, no_reports=no_reports)
-    warn_of_compilation("advance_chain")
+    if call.kind == "dynamics":
+        warn_of_compilation("advance_chain")
     outcome, writer = _compute(call, force=force)
-    _show(outcome)
+    show(outcome.run, outcome.key_figures)
     holds = all(verdict["met"] for verdict in outcome.run["verdicts"])
     call.leave(writer, exit_code(flagged=outcome.flagged, holds=holds, strict=strict), no_reports=no_reports)
 
 
 def _compute(call: CaseCall, *, force: bool) -> tuple[Outcome, RunWriter]:
-    from tractionpower.dynamics.run import CaseRun
-
+    """Compute the case and complete its results; when Ctrl-C comes what was computed is kept."""
     with call.preparing(force=force) as writer:
-        prepared = CaseRun(call.scenario, writer, call.name)
+        prepared = _new_run(call, writer)
     call.warn(prepared.warnings)
-    with keeping(writer, prepared, prepared.keep_unfinished):
-        outcome = _execute(prepared)
+    try:
+        with steps_bar("computing") as update:
+            outcome = prepared.execute(update)
         writer.finish(outcome.run, outcome.key_figures)
+    except KeyboardInterrupt:
+        tell(f"interrupted; what was computed is kept in {prepared.keep_unfinished(writer)}")
+        tell(f"`tractionpower report {writer.folder} --partial` makes reports of it")
+        raise
     return outcome, writer
 
 
-def _execute(prepared: CaseRun) -> Outcome:
-    with steps_bar("computing") as update:
-        return prepared.execute(update)
+def _new_run(call: CaseCall, writer: RunWriter) -> CaseRun | StationsRun:
+    """Return a run of the case, of whatever kind it is, checked."""
+    if call.kind == "dynamics":
+        from tractionpower.dynamics.run import CaseRun
 
+        return CaseRun(call.scenario, writer, call.name)
+    from tractionpower.dynamics.traindyn.stations_run import StationsRun
 
-def _show(outcome: Outcome) -> None:
-    from tractionpower.cli.dynamics_summary import show
-
-    show(outcome.run, outcome.key_figures)
+    return StationsRun(call.scenario, writer, call.name)

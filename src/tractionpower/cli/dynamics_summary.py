@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from tractionpower.cli.run_summary import sentence
+from tractionpower.model.quantity import Quantity
 
 SHOWN = {
     "greatest_tension_kn": "greatest tension",
@@ -29,6 +30,9 @@ SHOWN = {
 
 STOPPING = ("stopping_distance_m", "stopping_time_s", "braked_from_kmh", "mean_deceleration_mps2")
 
+LEAST_KWH = 5e-4
+"""An energy below it is not printed."""
+
 MOST_STOPS = 3
 """Stops that are printed: the last ones."""
 
@@ -41,10 +45,15 @@ def show(run: Mapping[str, Any], figures: Sequence[Mapping[str, Any]]) -> None:
     table = new_table([""], ["", ""])
     table.add_column("")
     table.add_column("")
-    for figure in _chosen(figures):
+    known = _chosen(figures) if run["kind"] == "dynamics" else figures
+    for figure in known:
         value = f"{figure['value']:z.{_digits(figure)}f}"
         table.add_row(
-            SHOWN[figure["name"]], value, figure["unit"], figure["place"], f"at {figure['time']}" if figure["time"] else ""
+            SHOWN.get(figure["name"]) or Quantity(figure["name"], "").words,
+            value,
+            figure["unit"],
+            figure["place"],
+            f"at {figure['time']}" if figure["time"] else "",
         )
     table.show_header = False
     console.print(table)
@@ -61,22 +70,25 @@ def _chosen(figures: Sequence[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]
     for figure in figures:
         if figure["name"] in STOPPING and figure["place"] not in stops[-MOST_STOPS:]:
             continue
-        if figure["name"] in SHOWN and (figure["value"] or not figure["name"].endswith("energy_kwh")):
+        if figure["name"] in SHOWN and (figure["unit"] != "kWh" or abs(figure["value"]) >= LEAST_KWH):
             yield figure
 
 
 def _digits(figure: Mapping[str, Any]) -> int:
-    """Return how many decimals tell something."""
-    return {"kN": 1, "km/h": 1, "m/s²": 3, "m": 2, "s": 2, "kWh": 3}.get(figure["unit"], 2)
+    """Return how many decimals tell something: of a number of things none."""
+    return {"": 0, "kN": 1, "km/h": 1, "m/s²": 3, "m": 2, "s": 2, "kWh": 3}.get(figure["unit"], 2)
 
 
 def _lines(run: Mapping[str, Any]) -> Iterator[str]:
+    if run["kind"] != "dynamics":
+        return
     unbraked = sum(stop["braked_at_s"] is None for stop in run["stops"])
     if unbraked:
         yield f"stops without a brake command: {unbraked}"
     ledger = run["ledgers"]["energy"]
     closes = "closes" if ledger["closes"] else "DOES NOT CLOSE"
-    yield f"energy ledger {closes}: {100.0 * ledger['gap_share']:.2g} % of the energy put in is left over"
+    share = "no number" if ledger["gap_share"] is None else f"{100.0 * ledger['gap_share']:.2g} %"
+    yield f"energy ledger {closes}: {share} of the energy put in is left over"
     words = f"{run['steps']} steps of {run['method']}, {run['end_s']:g} s in {run['wall_seconds']:.1f} s"
     more = f", {run['cut_steps']} cut where a vehicle came to a stand" if run["cut_steps"] else ""
     yield words + more

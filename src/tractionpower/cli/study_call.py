@@ -25,6 +25,7 @@ from tractionpower.cli.messages import (
 from tractionpower.cli.progress import cases_bar
 
 if TYPE_CHECKING:
+    from tractionpower.cosimulation.run import Run
     from tractionpower.errors import Problem
     from tractionpower.io.scenario_files import LoadedScenario
     from tractionpower.model.report import Report
@@ -46,18 +47,6 @@ class CasesOutcome(Protocol):
 
 
 Ended = TypeVar("Ended", bound=CasesOutcome)
-
-
-class Progressing(Protocol):
-    """A run that goes on."""
-
-    @property
-    def done(self) -> int:
-        """Steps computed so far."""
-
-    @property
-    def steps(self) -> int:
-        """Steps in all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,7 +186,7 @@ def _study_name(loaded: LoadedScenario) -> str:
 
 
 @contextmanager
-def keeping(writer: RunWriter, run: Progressing, keep: Callable[[RunWriter], Path]) -> Iterator[None]:
+def keeping(writer: RunWriter, run: Run, keep: Callable[[RunWriter], Path]) -> Iterator[None]:
     """Keep what was computed when Ctrl-C comes while `run` goes on, and say where it is."""
     try:
         yield

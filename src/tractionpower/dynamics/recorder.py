@@ -78,6 +78,7 @@ class ChainRecorder:
         standstill = max(scenario.case.standstill_mps, 1e-6)
         self.motion = Motion(state.movers["s_m"].copy(), standstill)
         self.notes: list[str] = []
+        self._is_closed = False
         self.cycles: RainflowCounter | None = None
         try:
             self.cycles = RainflowCounter(len(self.couplings))
@@ -97,7 +98,13 @@ class ChainRecorder:
             self.cycles.add(turns)
 
     def close(self, state: ChainState, bins: Array) -> None:
-        """Write what is known at the end only: extremes, distributions, cycles; `bins` are records of `HISTOGRAM`."""
+        """Write what is known at the end only: extremes, distributions, cycles; `bins` are records of `HISTOGRAM`.
+
+        Once: what is interrupted at its very end may come here again.
+        """
+        if self._is_closed:
+            return
+        self._is_closed = True
         if len(self.couplings):
             damage = None if self.cycles is None else relative_damage(self.cycles.damage(state.links["turn_n"]))
             self.writer.append("coupling_extremes", coupling_extremes_table(self.couplings, state.links, damage))
@@ -135,7 +142,7 @@ class ChainRecorder:
             *energy_figures(self.ledger(state)),
             steps,
         ]
-        return [figure.as_dict() for figure in figures]
+        return [figure.as_dict() for figure in figures if np.isfinite(figure.value)]
 
     def verdicts(self, state: ChainState) -> list[dict[str, Any]]:
         """Return verdicts on the endurable forces of the couplings."""

@@ -133,14 +133,14 @@ class CaseRun:
             summary["notes"].append(self._failure)
         run = {
             "format": 1,
-            "status": self._status(),
+            "status": self._status(closes=summary["ledgers"]["energy"]["closes"]),
             "kind": KIND,
             "study": self.study,
             "name": self.scenario.name,
             "input_hash": input_hash_of(self.scenario),
             "seed": 0,
             "versions": versions(),
-            "wall_seconds": time.perf_counter() - self._started,
+            "wall_seconds": time.perf_counter() - self._started - self._compile_s,
             "compile_seconds": self._compile_s,
             "warnings": [str(problem) for problem in self.warnings],
             **summary,
@@ -150,13 +150,16 @@ class CaseRun:
     def keep_unfinished(self, writer: RunWriter) -> Path:
         """Keep what an interrupted run has computed; return where it is."""
         self.recorder.add(*self.session.take_rows())
+        self.recorder.close(self.session.state, self.session.compiled.chain.bins)
         unfinished = self.outcome()
         return writer.keep_unfinished(unfinished.run | {"status": "interrupted"}, unfinished.key_figures)
 
-    def _status(self) -> str:
+    def _status(self, *, closes: bool) -> str:
         if self._failure:
             return "flagged"
-        return "complete" if self.session.has_ended or self._is_left else "interrupted"
+        if not (self.session.has_ended or self._is_left):
+            return "interrupted"
+        return "complete" if closes else "flagged"
 
 
 def run_case(scenario: DynamicsScenario, writer: RunWriter, study: str = "", progress: Progress | None = None) -> Outcome:

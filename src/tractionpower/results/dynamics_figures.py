@@ -78,11 +78,12 @@ class EnergyLedger:
         return abs(self.gap) / self.put_in if self.put_in > 0.0 else 0.0
 
     def as_dict(self) -> dict[str, Any]:
-        """Return energies [kWh] and how well they close."""
+        """Return energies [kWh] and how well they close; none where there is no number."""
         names = ("traction", "electric", "brake", "resistance", "gravity", "coupling", "kinetic_start", "kinetic_end")
-        energies = {f"{name}_kwh": getattr(self, name) / KWH for name in names}
+        told = {"gap_kwh": self.gap / KWH, "gap_share": self.gap_share}
+        told |= {f"{name}_kwh": getattr(self, name) / KWH for name in names}
         closes = bool(self.gap_share <= CLOSES_SHARE)  # not a number does not close
-        return {"closes": closes, "gap_kwh": self.gap / KWH, "gap_share": self.gap_share} | energies
+        return {"closes": closes} | {name: value if np.isfinite(value) else None for name, value in told.items()}
 
 
 class Motion:

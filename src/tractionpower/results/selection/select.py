@@ -12,6 +12,7 @@ import pyarrow as pa
 from tractionpower.errors import UsageError, raise_errors
 from tractionpower.model.scenario import ROUNDING_S, Scenario
 from tractionpower.results.columns import TABLES
+from tractionpower.results.kept import SCENARIOS
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.results import Results
 from tractionpower.results.selection.figures import feeders_of, loads_of, substations_of, trains_of, voltages_of
@@ -53,6 +54,8 @@ def select(results: Results, scenario: Scenario, selection: Selection) -> tuple[
         If the results are not those of a run, or no row belongs to the selection.
     """
     if str(results.run.get("kind") or "") not in ("", "feasibility", "size"):
+        if results.run["kind"] in SCENARIOS:
+            raise UsageError("these are results of train dynamics, whose reports cover the whole run; leave out what selects")
         raise UsageError(f"these are results of `{results.run['kind']}`, which has no rows over time to select from")
     raise_errors(check_selection(selection, scenario))
     tables = dict(_tables(results, scenario, selection))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tractionpower.errors import UsageError
+from tractionpower.results.kept import SCENARIOS
 from tractionpower.results.results import Results
 from tractionpower.results.store import RUN_FILE, RUNNING
 
@@ -101,4 +102,6 @@ def _opened(folder: Path) -> Results:
         raise UsageError(f"{folder} holds theoretical journeys, not a run")
     if results.run.get("kind") in ("compare", "measured"):
         raise UsageError(f"{folder} holds a comparison itself; name the folders that it compares")
+    if results.run.get("kind") in SCENARIOS:
+        raise UsageError(f"{folder} holds results of train dynamics, not of a supply; its key_figures.json sums it up")
     return results
