@@ -54,14 +54,12 @@ def run(
 ) -> None:
     """Compute a case of train dynamics and write its results."""
     from tractionpower.cli.console import warn_of_compilation
-    from tractionpower.cli.dynamics_summary import show
-
     call = call_case(case, changes or (), out, look_of(template, language), {"method": method, "step_s": step_s})
     call.greet()
     if call.kind == "dynamics":
         warn_of_compilation("advance_chain")
     outcome, writer = _compute(call, force=force)
-    show(outcome.run, outcome.key_figures)
+    _show(outcome)
     holds = all(verdict["met"] for verdict in outcome.run["verdicts"])
     call.leave(writer, exit_code(flagged=outcome.flagged, holds=holds, strict=strict), no_reports=no_reports)
 
@@ -91,3 +89,12 @@ def _new_run(call: CaseCall, writer: RunWriter) -> CaseRun | StationsRun:
     from tractionpower.dynamics.traindyn.stations_run import StationsRun
 
     return StationsRun(call.scenario, writer, call.name)
+
+
+def _show(outcome: Outcome) -> None:
+    if outcome.run["kind"] == "stations":
+        from tractionpower.cli.stations_summary import show
+    else:
+        from tractionpower.cli.dynamics_summary import show
+
+    show(outcome.run, outcome.key_figures)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tractionpower.errors import OutputError
 from tractionpower.model.dynamics.case import DynamicsScenario
+from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.texts import language, tr
@@ -28,7 +29,7 @@ PARTS = frozenset({"workbook", "figures"})
 
 def write_reports(
     results: Results,
-    scenario: Scenario | DynamicsScenario,
+    scenario: Scenario | DynamicsScenario | StationsCase,
     folder: Path,
     report: Report | None = None,
     *,
@@ -70,7 +71,7 @@ def write_reports(
 
 
 def _write_figures(
-    results: Results, scenario: Scenario | DynamicsScenario, folder: Path, report: Report
+    results: Results, scenario: Scenario | DynamicsScenario | StationsCase, folder: Path, report: Report
 ) -> tuple[list[Path], Sequence[str]]:
     """Write the figures that the template chooses; return their paths, and in words which of its names no figure has."""
     from tractionpower.reporting.figures.base.drawing import drawing

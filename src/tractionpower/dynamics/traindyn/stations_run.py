@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from pathlib import Path
 
@@ -51,17 +52,27 @@ class StationsRun:
         self._model = StationsModel(scenario, self._env, self._recorder)
         self._started = time.perf_counter()
 
+    @property
+    def steps(self) -> int:
+        """Samples up to the end of the case."""
+        return math.ceil(self.scenario.run.duration_s / self.scenario.run.period_s)
+
+    @property
+    def done(self) -> int:
+        """Samples so far."""
+        return int(self._env.now / self.scenario.run.period_s)
+
     def execute(self, progress: Progress | None = None) -> Outcome:
-        """Run until all trains have left, or to the end of the case; progress is told in simulated seconds."""
+        """Run until all trains have left, or to the end of the case; progress is told in samples."""
         env, over, total = self._env, self._model.over, self.scenario.run.duration_s
         while env.now < total and not over.processed:
             env.run(until=over | env.timeout(min(BLOCK_S, total - env.now)))
             self._recorder.flush()
             if progress is not None:
-                progress(round(env.now), round(total))
+                progress(self.done, self.steps)
         self._model.finish()
         if progress is not None:
-            progress(round(total), round(total))
+            progress(self.steps, self.steps)
         return self.outcome("complete")
 
     def outcome(self, status: str) -> Outcome:

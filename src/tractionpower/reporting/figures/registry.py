@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tractionpower.model.dynamics.case import DynamicsScenario
+from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.figures import of_run
 from tractionpower.reporting.figures.base.drawing import FORMATS, files_of, remove_files, stands_for
@@ -39,7 +40,7 @@ def figure_names() -> tuple[str, ...]:
     return (*of_run.GRAPHS, *of_run.SINGLE, *of_run.GROUPED, of_run.TRAINS, *of_many, *of_chain.NAMES, *of_stations.NAMES)
 
 
-def unknown_names(chosen: Sequence[str], scenario: Scenario | DynamicsScenario) -> list[str]:
+def unknown_names(chosen: Sequence[str], scenario: Scenario | DynamicsScenario | StationsCase) -> list[str]:
     """Return which of the chosen names of figures no figure has; `trains/ID` needs such a train in the timetable."""
     trains = [f"{of_run.TRAINS}/{run.id}" for run in scenario.runs] if isinstance(scenario, Scenario) else []
     known = figure_names()
