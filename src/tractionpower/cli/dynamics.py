@@ -54,6 +54,7 @@ def run(
 ) -> None:
     """Compute a case of train dynamics and write its results."""
     from tractionpower.cli.console import warn_of_compilation
+
     call = call_case(case, changes or (), out, look_of(template, language), {"method": method, "step_s": step_s})
     call.greet()
     if call.kind == "dynamics":

@@ -7,6 +7,7 @@ from typing import Any
 from tractionpower.dynamics.session import Rows, Session
 from tractionpower.dynamics.statistics import EXPONENT, RainflowCounter
 from tractionpower.errors import UsageError
+from tractionpower.kernels.chain import TINY_S
 from tractionpower.model.dynamics.case import DynamicsScenario
 
 REFERENCE_KN = 100.0
@@ -49,6 +50,16 @@ class DrivenSession(Session):
         self._damage = float(self._cycles.damage(now)[0]) / REFERENCE_KN**EXPONENT
         cycles = self._cycles.cycles(now)[0]
         return found | {"rainflow": [(range_kn, mean_kn, count) for (range_kn, mean_kn), count in cycles.items()]}
+
+    def end(self) -> None:
+        """End the case here and now, as it would have ended by time: the last state is recorded."""
+        setup, ledger = self.compiled.chain.chain, self.state.ledger[0]
+        is_recorded = self.time_s < ledger["next_record_s"] - setup[0]["record_s"] + TINY_S
+        if is_recorded or self.has_ended:
+            self.state.ledger["ended"] = True
+        else:
+            setup["end_s"] = self.time_s
+            self.advance(self.time_s)
 
     def _taken(self, rows: Rows) -> None:
         if self._cycles is not None:

@@ -90,7 +90,6 @@ class CaseRun:
         self._started = time.perf_counter()
         self._compile_s = 0.0
         self._failure = ""
-        self._is_left = False
 
     @property
     def done(self) -> int:
@@ -121,7 +120,7 @@ class CaseRun:
 
     def leave(self, scenario: DynamicsScenario, failure: str = "") -> Outcome:
         """End a run that a driver has ended: it is one of the case as he has driven it; `failure` says what ended it instead."""
-        self.scenario, self._failure, self._is_left = scenario, failure, True
+        self.scenario, self._failure = scenario, failure
         self.recorder.close(self.session.state, self.session.compiled.chain.bins)
         return self.outcome()
 
@@ -157,7 +156,7 @@ class CaseRun:
     def _status(self, *, closes: bool) -> str:
         if self._failure:
             return "flagged"
-        if not (self.session.has_ended or self._is_left):
+        if not self.session.has_ended:
             return "interrupted"
         return "complete" if closes else "flagged"
 

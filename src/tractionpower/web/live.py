@@ -95,6 +95,9 @@ class LiveRun:
 
     def finish(self, failure: str = "") -> Outcome:
         """Complete the results, and keep the case as it was driven beside them; `failure` says what has ended the drive."""
+        if not failure:
+            self.session.end()
+        self._write([self.session.take_rows()])
         scenario = self._as_driven()
         outcome = self._run.leave(scenario, failure)
         self._writer.keep(scenario)
