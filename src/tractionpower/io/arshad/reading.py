@@ -24,7 +24,7 @@ from tractionpower.model.vehicle import Vehicle
 
 Model = TypeVar("Model", bound=BaseModel)
 
-_PAPER = "M. J. Arshad et al., Mathematical modeling of train dynamics: a step towards PC train simulator"
+PAPER = "M. J. Arshad et al., Mathematical modeling of train dynamics: a step towards PC train simulator"
 
 
 def read_arshad(reader: Reader, found: FoundCase) -> tuple[DynamicsScenario | None, Mark]:
@@ -80,7 +80,7 @@ def _case_data(
     told = f"Assumed, as the configuration leaves it out: {'; '.join(assumed)}." if assumed else "Nothing is assumed."
     case: dict[str, Any] = {
         "name": settings.text("name") or found.name,
-        "source": f"{_PAPER}. {told}",
+        "source": f"{PAPER}. {told}",
         "coupling": COUPLING,
         "brake": gear,
         "air_brake": air,

@@ -6,6 +6,7 @@ and messages that they put together. A place takes any text, which is looked up 
 
 from __future__ import annotations
 
+from tractionpower.reporting.texts.recorded_dynamics import OF_DYNAMICS
 from tractionpower.reporting.texts.recorded_studies import OF_STUDIES
 
 FIGURES = (
@@ -229,6 +230,7 @@ TOGETHER = ("{first}; {second}", "{first}: {second}", "{first}, {second}", "{fir
 """How parts stand together that are looked up one by one; in the order in which a text is parted."""
 
 SENTENCES: tuple[str, ...] = (
-    *FIGURES, *HEADINGS, *SHEETS, *DEFINITIONS, *VERDICTS, *FAILURES, *PLACES, *EVENTS, *NOTES, *OF_STUDIES, *TOGETHER,
+    *FIGURES, *HEADINGS, *SHEETS, *DEFINITIONS, *VERDICTS, *FAILURES, *PLACES, *EVENTS, *NOTES, *OF_STUDIES, *OF_DYNAMICS,
+    *TOGETHER,
 )  # fmt: skip
 """All of them, those of studies included."""

@@ -14,6 +14,9 @@ from tractionpower.io.rating_files import DUTY_CLASSES
 from tractionpower.kernels.train_tables import LIMITED_BY, PHASES
 from tractionpower.model.base import Declaration
 from tractionpower.model.contingency import OUTAGE_KINDS, Contingency
+from tractionpower.model.dynamics.case import Case, CaseRun, CaseStart, CaseTrack, DynamicsScenario
+from tractionpower.model.dynamics.coupling import Coupling, Gear, Wedge
+from tractionpower.model.dynamics.gear import AirBrake, BlockFriction, BrakeGear, ElectricBrake, Traction
 from tractionpower.model.feasibility import Feasibility
 from tractionpower.model.quantity import Quantity
 from tractionpower.model.remedies import RemedyCosts, RemedySearch
@@ -21,6 +24,7 @@ from tractionpower.model.scenario import Clock, Output, Scenario, StudyFile
 from tractionpower.model.sizing import Sizing, SizingSearch, UsefulVoltageStudy
 from tractionpower.results import rails
 from tractionpower.results.columns import DELAY_PARTS, ORIGIN_PARTS, TABLES
+from tractionpower.results.dynamics_figures import WORKS
 from tractionpower.results.key_figures import LEDGER_FIGURES
 from tractionpower.results.selection.select import PART
 from tractionpower.studies.cases.judgement import DEMAND, PEAK
@@ -38,11 +42,35 @@ SETTINGS = (
     UsefulVoltageStudy,
     SizingSearch,
     Contingency,
+    Case,
+    CaseRun,
+    CaseStart,
+    CaseTrack,
+    AirBrake,
+    BrakeGear,
+    BlockFriction,
+    Traction,
+    ElectricBrake,
+    Coupling,
+    Gear,
+    Wedge,
 )
 """Declarations of which reports tell the meaning of every field."""
 
 CALLS = ("arrival", "departure", "pass")
-STATUSES = ("complete", "flagged", "interrupted", "refused", "failed", "verified", "secondary", "recalled", "user", "derived")
+STATUSES = (
+    "complete",
+    "flagged",
+    "interrupted",
+    "refused",
+    "failed",
+    "verified",
+    "secondary",
+    "recalled",
+    "user",
+    "derived",
+    "assumed",
+)
 CONTINGENCY = ("base", "pair", "normal", "low", "high", "dead")
 VERDICTS = ("feasible", "infeasible", "not finished", "not judged", "pass", "fail", "not rated", "holds", "fails", "not reached")
 WHERE = ("cross section", "pantograph", "fixed", "zone", "train", "run", "hour", "given", "whole run", "network", "driving")
@@ -75,14 +103,19 @@ def _of_tables() -> Iterator[str]:
 
 
 def _of_figures() -> Iterator[str]:
-    for name, definition in (*LEDGER_FIGURES.values(), *rails.FIGURES.items(), *rails.DEVICE_FIGURES.items()):
+    for name, definition in (
+        *LEDGER_FIGURES.values(),
+        *((name, told) for name, (_, told) in WORKS.items()),
+        *rails.FIGURES.items(),
+        *rails.DEVICE_FIGURES.items(),
+    ):
         yield from (Quantity(name, "").words, definition)
 
 
 def _of_declarations() -> Iterator[str]:
     """Yield names, meanings, sources of defaults and words of the fields of all inputs."""
     known: set[type[BaseModel]] = set()
-    left: list[type[BaseModel]] = [Scenario, StudyFile]
+    left: list[type[BaseModel]] = [Scenario, StudyFile, DynamicsScenario]
     while left:
         kind = left.pop()
         if kind in known:

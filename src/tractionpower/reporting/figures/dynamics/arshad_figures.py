@@ -11,9 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from tractionpower.io.arshad.reading import PAPER
 from tractionpower.reporting.facts.chain_data import ChainData
 from tractionpower.reporting.figures.base.style import BLUE, PAGE, STYLE, new_figure
-from tractionpower.reporting.figures.dynamics.coupling_figures import loop_of
+from tractionpower.reporting.figures.dynamics.coupling_figures import half_slack, loop_of, mark_slack
 from tractionpower.reporting.figures.dynamics.panels import (
     LINES,
     coupling_told,
@@ -32,8 +33,6 @@ from tractionpower.reporting.texts import tr
 
 Array = NDArray[Any]
 
-AUTHOR = "Arshad"
-
 LOOP = 2
 """Number of the coupling of their figure 9, from 0: between the third and the fourth car."""
 
@@ -41,9 +40,8 @@ MOST_CARS = 6
 
 
 def is_of_arshad(data: ChainData) -> bool:
-    """Return whether a case is one of theirs: in their units, or with them as its source."""
-    case = data.scenario.case
-    return case.units == "imperial" or AUTHOR in case.source
+    """Return whether a case was read from their files."""
+    return data.scenario.case.source.startswith(PAPER)
 
 
 def speed(data: ChainData) -> Figure | None:
@@ -82,18 +80,26 @@ def coupler(data: ChainData) -> Figure | None:
     if not data.has("couplings"):
         return None
     number_of = min(LOOP, len(data.couplings) - 1)
-    measure = data.units["effort"]
     with mpl.rc_context(STYLE):
-        figure = new_figure(PAGE, 3.9)
-        axes = figure.add_subplot()
-        loop_of(axes, data, number_of, measure.per, folded=True)
-        axes.set_xlabel(label(data, "deflection", tr("displacement, the sign of compression changed")))
-        axes.set_ylabel(label(data, "effort", tr("force, the sign of compression changed")))
-        axes.set_xlim(min(0.0, axes.get_xlim()[0]), None)
-        axes.set_ylim(0.0, None)
-        legend_below(figure, *axes.get_legend_handles_labels(), 2)
+        figure = new_figure(PAGE, 3.6, 0.05)
+        panels = list(figure.subplots(1, 2, sharey=True))
+        for axes in panels:
+            loop_of(axes, data, number_of, "effort")
+            axes.set_xlabel(label(data, "deflection", tr("displacement, the sign of\ncompression changed")))
+            axes.set_ylim(0.0, None)
+        whole, near = panels
+        whole.set_xlim(min(0.0, whole.get_xlim()[0]), None)
+        mark_slack(whole, data, number_of)
+        whole.set_title(tr("with the slack"), fontsize=8.0)
+        low, high = near.get_xlim()
+        near.set_xlim(max(low, half_slack(data, number_of) - 0.05 * (high - half_slack(data, number_of))), high)
+        mark_slack(near, data, number_of)
+        near.set_title(tr("beyond the slack"), fontsize=8.0)
+        whole.set_ylabel(label(data, "effort", tr("force, the sign of\ncompression changed")))
+        handles, labels = whole.get_legend_handles_labels()
+        legend_below(figure, handles, labels, 3)
         told = coupling_told(data.couplings[number_of])
-        return titled(figure, data, tr("coupler force over displacement (Arshad et al., figure 9)"), told)
+        return titled(figure, data, tr("force over displacement (Arshad et al., figure 9)"), told)
 
 
 def relative_position(data: ChainData) -> Figure | None:

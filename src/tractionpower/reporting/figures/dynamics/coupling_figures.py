@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tractionpower.reporting.facts.chain_data import ChainData
 from tractionpower.reporting.facts.series import bucket_starts, peaks_kept
-from tractionpower.reporting.figures.base.style import BLUE, INK, PAGE, SMALLEST, STYLE, VERMILION, new_figure
+from tractionpower.reporting.figures.base.style import BLUE, INK, PAGE, PALE, SMALLEST, STYLE, VERMILION, new_figure
 from tractionpower.reporting.figures.dynamics.panels import (
     TIME,
     coupling_told,
@@ -27,7 +27,7 @@ from tractionpower.reporting.figures.dynamics.panels import (
     told_value,
     zero_line,
 )
-from tractionpower.reporting.figures.supply.panels import legend_below
+from tractionpower.reporting.figures.supply.panels import legend_below, once
 from tractionpower.reporting.texts import tr
 
 Array = NDArray[Any]
@@ -38,6 +38,9 @@ MOST_COLUMNS = 1000
 """Instants of the map of forces; of what lies between them the greatest force of either sign is shown."""
 
 MOST_LOOP_POINTS = 20_000
+
+MOST_BARS = 60
+"""Couplings with bars that stand apart."""
 
 DIVERGING = "RdBu"
 """Colours about nothing: blue tension, red compression."""
@@ -79,14 +82,14 @@ def _peaks_in_time(times: Array, values: Array) -> tuple[Array, Array]:
 
 def _mark_extremes(axes: Axes, data: ChainData) -> None:
     """Mark where and when the greatest tension and compression came about."""
-    for side, sign in (("tension", "▲"), ("compression", "▼")):
+    for side, sign in (("tension", "^"), ("compression", "v")):
         forces = data.greatest(side) if len(data.extremes) else np.zeros(0)
         if not len(forces) or not np.nanmax(forces) > 0.0:
             continue
         number_of = int(np.nanargmax(forces))
         at = float(data.extremes[f"{side}_at_s"].iloc[number_of])
-        style: Any = {"ha": "center", "va": "center", "fontsize": 8.0, "color": INK}
-        axes.text(at, number_of + 1.0, sign, clip_on=False, **style)
+        style: Any = {"color": INK, "markersize": 6.5, "markeredgecolor": "white", "markeredgewidth": 0.8, "clip_on": False}
+        axes.plot([at], [number_of + 1.0], sign, zorder=4, **style)
 
 
 def extremes_told(data: ChainData) -> str:
@@ -119,7 +122,7 @@ def extremes(data: ChainData) -> Figure | None:
             ("compression", -1.0, COMPRESSION, tr("greatest compression"), tr("endurable compression")),
         ):
             values = sign * per * data.greatest(side)
-            axes.bar(numbers, values, width=0.86, color=colour, label=words, zorder=2)
+            axes.bar(numbers, values, width=0.86 if len(numbers) <= MOST_BARS else 1.0, color=colour, label=words, zorder=2)
             limit = sign * per * data.endurable(side)
             held += [values, limit]
             if np.isfinite(limit).any():
@@ -143,32 +146,51 @@ def loops(data: ChainData) -> Figure | None:
         return None
     shown = data.chosen_couplings()
     with mpl.rc_context(STYLE):
-        figure = new_figure(PAGE, 3.4, 0.04)
+        figure = new_figure(PAGE, 3.5, 0.04)
         panels = list(figure.subplots(1, len(shown), squeeze=False, sharex=True, sharey=True)[0])
-        force, deflection = _loop_data(data)
         for axes, number_of in zip(panels, shown, strict=True):
-            _loop(axes, deflection[:, number_of], force[:, number_of], folded=False)
+            _loop(axes, *_force_and_deflection(data, number_of), folded=False)
             most = tr(", most loaded") if number_of == data.most_loaded and len(shown) > 1 else ""
             axes.set_title(f"{coupling_told(data.couplings[number_of])}{most}", fontsize=8.0)
             axes.set_xlabel(label(data, "deflection", tr("deflection, drawn out positive")), fontsize=SMALLEST)
             zero_line(axes)
+        for axes, number_of in zip(panels, shown, strict=True):  # when all have shared their axes
+            mark_slack(axes, data, number_of)
         panels[0].set_ylabel(label(data, "force", tr("force, tension positive")))
+        if any(half_slack(data, number_of) > 0.0 for number_of in shown):
+            handles, labels = once(panels)
+            legend_below(figure, handles, labels, 3)
         return titled(figure, data, tr("force and deflection of couplings"))
 
 
-def loop_of(axes: Axes, data: ChainData, number_of: int, per: float, *, folded: bool) -> None:
-    """Draw the loop of one coupling into axes; `folded` shows compression on the same side as tension, signs changed."""
-    force = data.of_couplings("force_kn")[:, number_of] * per
-    deflection = data.of_couplings("deflection_mm")[:, number_of] * data.units["deflection"].per
-    _loop(axes, deflection, force, folded=folded)
+def loop_of(axes: Axes, data: ChainData, number_of: int, quantity: str) -> None:
+    """Draw the loop of one coupling with compression on the side of tension, signs changed; its force as `quantity`."""
+    force, deflection = _force_and_deflection(data, number_of)
+    _loop(axes, force / data.units["force"].per * data.units[quantity].per, deflection, folded=True)
 
 
-def _loop_data(data: ChainData) -> tuple[Array, Array]:
-    force = data.of_couplings("force_kn") * data.units["force"].per
-    return force, data.of_couplings("deflection_mm") * data.units["deflection"].per
+def mark_slack(axes: Axes, data: ChainData, number_of: int) -> None:
+    """Shade the slack of a coupling, in which it neither pulls nor pushes."""
+    half = half_slack(data, number_of)
+    low, high = axes.get_xlim()
+    if half > 0.0:
+        axes.axvspan(max(low, -half), min(high, half), color=PALE, alpha=0.45, linewidth=0.0, zorder=0.4, label=tr("slack"))
+        axes.set_xlim(low, high)
 
 
-def _loop(axes: Axes, deflection: Array, force: Array, *, folded: bool) -> None:
+def half_slack(data: ChainData, number_of: int) -> float:
+    """Return half the slack of a coupling in the unit of the case; 0 where it is not known."""
+    kind = data.coupling_of(number_of)
+    return 0.0 if kind is None else 0.5 * kind.slack_mm * data.units["deflection"].per
+
+
+def _force_and_deflection(data: ChainData, number_of: int) -> tuple[Array, Array]:
+    """Return force and deflection of a coupling in the units of the case."""
+    force = data.of_couplings("force_kn")[:, number_of] * data.units["force"].per
+    return force, data.of_couplings("deflection_mm")[:, number_of] * data.units["deflection"].per
+
+
+def _loop(axes: Axes, force: Array, deflection: Array, *, folded: bool) -> None:
     """Draw tension and compression in their colours; what is neither is both, so that no line is broken."""
     kept = peaks_kept(force, MOST_LOOP_POINTS)
     deflection, force = deflection[kept], force[kept]

@@ -34,6 +34,9 @@ Array = NDArray[Any]
 MOST_PLACES = 6
 """Vehicles whose places are drawn."""
 
+MOST_SMALL_M = 1.0
+"""Changes of place up to this are drawn in a small unit [m]."""
+
 ENERGY_LOOKS: dict[str, tuple[str, Any]] = {
     "traction": (BLUE, "-"),
     "resistance": (GREY, (0, (5, 2))),
@@ -201,7 +204,9 @@ def relative_positions(data: ChainData) -> Figure | None:
     """Draw by how much the places of vehicles against the first have changed since the start (Arshad et al., figure 10)."""
     if not data.has("vehicles") or len(data.vehicles) < 2:
         return None
-    moved = data.of_vehicles("relative_position_m") * 1000.0 * data.units["deflection"].per
+    moved = data.of_vehicles("relative_position_m")
+    quantity = "distance" if np.nanmax(np.abs(moved)) > MOST_SMALL_M else "deflection"
+    moved = moved * (1.0 if quantity == "distance" else 1000.0) * data.units[quantity].per
     count = len(data.vehicles)
     shown = np.unique(np.linspace(1, count - 1, min(MOST_PLACES, count - 1)).round().astype(int))
     with mpl.rc_context(STYLE):
@@ -210,7 +215,7 @@ def relative_positions(data: ChainData) -> Figure | None:
             line(axes, data.times, moved[:, number_of], color=colour, label=vehicle_told(data.vehicles[number_of]))
         room(axes, [moved[:, shown]])
         zero_line(axes)
-        axes.set_ylabel(label(data, "deflection", tr("change of the place against the first\nvehicle; negative: drawn out")))
+        axes.set_ylabel(label(data, quantity, tr("change of the place against the first\nvehicle; negative: drawn out")))
         time_axis(axes, data.times)
         legend_below(figure, *axes.get_legend_handles_labels(), 3)
         return titled(figure, data, tr("relative positions of vehicles"))

@@ -30,6 +30,9 @@ LOOKS: tuple[tuple[str, Any], ...] = ((FIRST, "-"), (MIDDLE, (0, (5, 1.5))), (LA
 MOST_LETTERS = 30
 """Letters of the name of a vehicle or coupling in a legend."""
 
+LITTLE = 0.02
+"""A part of an axis that is too little for room of its own."""
+
 TIME = mark("time [s]")
 
 
@@ -112,4 +115,4 @@ def room(axes: Axes, values: Sequence[Array], share: float = 0.08) -> None:
     every = every[np.isfinite(every)]
     low, high = (min(0.0, float(every.min())), max(0.0, float(every.max()))) if len(every) else (0.0, 1.0)
     wide = max(high - low, 1e-9)
-    axes.set_ylim(low - (share * wide if low < 0.0 else 0.0), high + (share * wide if high > 0.0 or low == 0.0 else 0.0))
+    axes.set_ylim(low - (share * wide if low < -LITTLE * wide else 0.0), high + (share * wide if high > LITTLE * wide else 0.0))

@@ -61,7 +61,8 @@ def _joint(data: ChainData, which: str, words: str, title: str) -> Figure | None
         bar.ax.tick_params(labelsize=SMALLEST)
         if classes <= MOST_NUMBERS:
             _write_shares(axes, edges, joint.share)
-        axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+        axes.set_ylim(-0.5, levels - 0.5)
         axes.set_ylabel(words)
         axes.set_xlabel(label(data, "speed", tr("speed")))
         return titled(figure, data, title)
@@ -136,7 +137,7 @@ def rainflow(data: ChainData) -> Figure | None:
         right.xaxis.set_major_formatter(PLAIN)
         right.xaxis.set_minor_formatter(NullFormatter())
         right.set_ylim(0.0, None)
-        right.set_xlabel(tr("cycles that reach or exceed the range"))
+        right.set_xlabel(tr("cycles of this range or more"))
         right.set_ylabel(label(data, "force", tr("range")))
         handles, labels = right.get_legend_handles_labels()
         legend_below(figure, handles, labels, 3)

@@ -1,0 +1,38 @@
+"""Sentences that a run of train dynamics records in English, with places for names and numbers."""
+
+from __future__ import annotations
+
+FIGURES = (
+    "greatest tension", "greatest compression", "greatest absorbed", "greatest speed", "distance", "greatest acceleration",
+    "greatest relative movement", "stopping distance", "stopping time", "braked from", "mean deceleration",
+    "traction energy", "electric brake energy", "air brake energy", "resistance energy", "gravity energy", "coupling energy",
+    "kinetic energy change", "energy closing error", "steps",
+)  # fmt: skip
+"""Names of key figures in words."""
+
+DEFINITIONS = (
+    "greatest of all couplings and steps",
+    "greatest of all couplings and steps: there was none",
+    "most work that one coupling has taken in; what its springs hold at the end is part of it",
+    "greatest of the first vehicle, recorded rows",
+    "way of the first vehicle from the start to the end",
+    "of greatest magnitude of all vehicles, recorded rows",
+    "farthest that a vehicle has moved against the first since the start",
+    "way of the first vehicle from the brake command to the standstill of the whole train; time of the command",
+    "from the brake command to the standstill of the whole train, to the recorded row; time of the command",
+    "speed of the first vehicle at the brake command",
+    "v²/(2 s) of the speed at the brake command and the stopping distance",
+    "kinetic energy with rotating parts, end less start",
+    "magnitude of what the ledger leaves over, by the energy put in: traction, kinetic at the start, descent",
+    "steps of the method; where a vehicle comes to a stand a step is cut, which counts as two",
+)
+"""Definitions of key figures."""
+
+PLACES = ("coupling {coupling}", "vehicle {vehicle}", "stop {number}")
+"""Where something was found."""
+
+NOTES = ("no cycles are counted: {reason}",)
+"""Notes of a run."""
+
+OF_DYNAMICS: tuple[str, ...] = (*FIGURES, *DEFINITIONS, *PLACES, *NOTES)
+"""All of them."""
