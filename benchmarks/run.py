@@ -1,4 +1,4 @@
-"""Measure how fast tractionpower is: solver, trains, whole days, beside general programs, start. Entry of ``make bench``."""
+"""Measure how fast tractionpower is, part by part, also beside general programs. Entry of ``make bench``."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable
 
 import day
+import dynamics
 import line
 import many
 import peers
@@ -47,6 +48,10 @@ def _reports(quick: bool) -> str:
     return reports.describe(reports.measure(1 if quick else 3))
 
 
+def _dynamics(quick: bool) -> str:
+    return dynamics.describe(dynamics.measure(*((1, 120.0) if quick else (5, 600.0))))
+
+
 def _peers(quick: bool) -> str:
     return peers.describe(peers.compare(*((30, 3) if quick else (60, 11))))
 
@@ -63,6 +68,7 @@ PARTS: dict[str, Callable[[bool], str]] = {
     "timetable": _timetable,
     "many": _many,
     "reports": _reports,
+    "dynamics": _dynamics,
     "peers": _peers,
     "startup": _startup,
 }

@@ -41,10 +41,11 @@ def one_mass(slopes):
 def many(stiffness, slopes, damping_share=0.3):
     """Return the chain with all that the drive gives, and couplings of this stiffness [kN/mm]."""
     damping = damping_share * 2.0 * (stiffness * 1e6 * 25e3) ** 0.5 / 1e3
+    gradients = [{"from_m": low, "to_m": high, "permille": slope} for low, high, slope in slopes]
     return make_chain(
         PARTS, spring(stiffness, damping_kns_per_m=damping), (LOCO, WAGON),
         traction={"levels": 1, "time_constant_s": 0.0}, commands=[{"time_s": 0.0, "drive": 1}],
-        track={"gradients": [{"from_m": low, "to_m": high, "permille": slope} for low, high, slope in slopes], "rounding_radius_m": 0.0},
+        track={"gradients": gradients, "rounding_radius_m": 0.0},
         run={"step_s": 0.001, "method": "rk4", "record_every_s": 0.1, "duration_s": 140.0},
     )  # fmt: skip
 

@@ -148,7 +148,7 @@ def test_the_error_of_euler_falls_with_the_step():
 def test_adhesion_caps_the_brake_or_all_resistance_as_printed():
     # Zobory and Bekefi, eq. 6: as printed the cap holds for air drag too
     vehicle = LOCOMOTIVE | {
-        "adhesive_mass_t": 80.0, "resistance": {"a_n": 150e3}, "adhesion": {"a_kmh": 0.0, "b_kmh": 44.0, "c": 0.1}, "rotating_mass_factor": 1.0,
+        "adhesive_mass_t": 80.0, "resistance": {"a_n": 150e3}, "adhesion": {"a_kmh": 0.0, "b_kmh": 44.0, "c": 0.1},
     }  # fmt: skip
     strong = {"brake_ratio": 2.0, "rigging_efficiency": 1.0, "friction": {"law": "constant", "friction": 0.3}}
     cap = 0.1 * 80e3 * G
