@@ -50,7 +50,7 @@ class FakeSession:
         }
 
     def set(self, **setting: Any) -> None:
-        self.settings.append((self.time_s, setting))
+        self.settings.append((self.time_s, dict(setting)))
         before = self._wanted_kn()
         brake = setting.pop("brake", None)
         if brake is not None:
