@@ -58,6 +58,7 @@ def test_grade_of_eq_10():
         ("0,4 m", "length", "'0,4 m'", "a number", "point"),
         ("many", "time", "'many'", "a number", ""),
         ("1 % ", "degrees", "the unit", "deg", ""),
+        ("1e999", "count", "'1e999'", "a finite number", ""),
         ("2.5", "count", "'2.5'", "a whole number", ""),
         ("3 m", "number", "the unit", "without a unit", ""),
     ],

@@ -47,6 +47,9 @@ COLUMNS = (
 _CONSTANT_LB_PER_TON, _AXLE_LB = 1.5, 18.0
 _DRAG_LOCOMOTIVE, _DRAG_LOADED, _DRAG_EMPTY = 24.0, 4.2, 12.0
 _AREA_LOCOMOTIVE_M2, _AREA_CAR_M2 = 160.0 * FOOT_M**2, 105.0 * FOOT_M**2
+_LEAST, _MOST = 1e-6, 1e6
+"""Bounds of all figures in the units of the declarations; only what no vehicle has lies beyond."""
+
 _SPEED_MPS = 70.0 * MILE_KM / 3.6
 """Greatest speed where nothing is said: 70 mile/h, assumed; nothing depends on it."""
 
@@ -115,8 +118,8 @@ def _values(cells: Cells, problems: list[Problem]) -> dict[str, float]:
     for column in COLUMNS:
         value = number(cells, column, problems)
         at_least_0 = column in (_LADING, _DRAG)
-        if value is not None and (value < 0.0 or (value == 0.0 and not at_least_0)):
-            allowed = "at least 0" if at_least_0 else "above 0"
+        if value is not None and not (0.0 if at_least_0 else _LEAST) <= value <= _MOST:
+            allowed = f"{'at least 0' if at_least_0 else 'above 0'}, at most {_MOST:g}"
             problems.append(cells.problem(column.name, "out_of_bounds", shown(cells.texts[column.name]), allowed))
         elif value is not None:
             values[column.name] = value

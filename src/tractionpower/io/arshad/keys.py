@@ -55,10 +55,10 @@ PRINTED: tuple[Key, ...] = (
     Key("step", ("Step size",), "time", None, least=1e-6, most=10.0, printed=True),
     Key("distance_limit", ("Distance limit",), "length", least=1e-3, printed=True),
     Key("hard_limit", ("Coupler hard limit",), "length", least=1e-6, most=10.0, printed=True),
-    Key("first_stage", ("First stage loading",), "stiffness", "10 kN/mm", "Arshad et al., eq. 8", 1e-6, printed=True),
-    Key("second_stage", ("Second stage loading",), "stiffness", "25 kN/mm", "Arshad et al., eq. 9", 1e-6, printed=True),
-    Key("locked", ("Locked stiffness",), "stiffness", "600000 N/mm", _PAPER, 1e-6, printed=True),
-    Key("relaxing", ("Relaxing stiffness",), "stiffness", "600 N/mm", _PAPER, printed=True),
+    Key("first_stage", ("First stage loading",), "stiffness", "10 kN/mm", "Arshad et al., eq. 8", 1e-6, 1e6, printed=True),
+    Key("second_stage", ("Second stage loading",), "stiffness", "25 kN/mm", "Arshad et al., eq. 9", 1e-6, 1e6, printed=True),
+    Key("locked", ("Locked stiffness",), "stiffness", "600000 N/mm", _PAPER, 1e-6, 1e6, printed=True),
+    Key("relaxing", ("Relaxing stiffness",), "stiffness", "600 N/mm", _PAPER, most=1e6, printed=True),
     Key("slack", ("Slack region width",), "length", "0.1 m", _PAPER, most=2.0, printed=True),
     Key(
         "kinetic", ("Kinetic fric coff", "Kinetic friction coefficient"), "number", "0.2", _PAPER, most=2.0, printed=True

@@ -17,6 +17,9 @@ from tractionpower.io.wording import did_you_mean, shown
 CHORD_M = 100.0 * FOOT_M
 """Chord whose angle is the degree of a curve (section 5.2)."""
 
+_TANGENT_DEG = 1e-6
+"""Curves of fewer degrees are straight."""
+
 _FROM = Column("from", ("Start Point", "Start"), "length")
 _TO = Column("to", ("End Point", "End"), "length")
 _ELEMENT = Column("element", ("Track Element", "Element"))
@@ -97,10 +100,13 @@ def track_data(profile: Profile, start_m: float, length_m: float, curve_n_per_kn
                 "from_m": each.from_m - start_m, "to_m": each.to_m - start_m, "radius_m": radius_of(each.value),
                 "turns": "right" if each.value > 0.0 else "left",
             }
-            for each in profile.curves if each.value
+            for each in profile.curves if abs(each.value) > _TANGENT_DEG
         ],
     }  # fmt: skip
-    for name, rows in (("gradients", profile.grades), ("curves", tuple(each for each in profile.curves if each.value))):
+    for name, rows in (
+        ("gradients", profile.grades),
+        ("curves", tuple(each for each in profile.curves if abs(each.value) > _TANGENT_DEG)),
+    ):
         children: dict[str | int, Mark] = {k: Mark(profile.label, each.line) for k, each in enumerate(rows)}
         mark.children[name] = Mark(profile.label, 0, children)
     # a / R with R = 1746.4 m / degrees, so that one degree has the resistance of the configuration.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from typing import Literal
@@ -107,6 +108,8 @@ def read_quantity(text: str, dimension: Dimension, unit: str | None = None) -> f
         allowed = f"a number with a unit: {allowed_units(dimension)}" if allowed_units(dimension) else "a number without a unit"
         return Told(f"'{text}', without a unit" if not match["unit"] else f"the unit in '{text}'", allowed)
     value = float(match["number"])
+    if not math.isfinite(value):
+        return Told(f"'{text}'", "a finite number")
     if dimension == "count" and value != round(value):
         return Told(f"'{text}'", "a whole number")
     return value * units[given]
