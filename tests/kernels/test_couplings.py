@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from small_couplings import SPRING_8_9, TAN_35, coupling, cycle, points, trace, wedge, work
 
-from tractionpower.dynamics.couplings import coupling_tables
+from tractionpower.dynamics.couplings import coupling_tables, greatest_damping, loop
 from tractionpower.kernels.chain_state import LINK
 
 SPRING = {"loading": points(*SPRING_8_9)}
@@ -260,3 +260,21 @@ def test_force_is_continuous_where_it_bends(name):
                 trace(which, [60.0], [1.0], links)
                 low, high = (trace(which, x + s * e, v + s * dv, links.copy())[0] for s in (-1.0, 1.0))
                 assert high == pytest.approx(low, abs=1.5e-3)
+
+
+def test_damping_of_the_parts_in_series_burns_its_share_and_never_pulls():
+    """A linear spring of 10 kN/mm with 100 kN s/m in series parts: loaded 40 mm at 0.5 m/s and unloaded again."""
+    stiff = {"stiffness_kn_per_mm": 10.0, "locked_damping_kns_per_m": 100.0}
+    made = coupling(stiff, slack_mm=20.0)
+    x = np.concatenate([np.linspace(0.0, 0.05, 2001), np.linspace(0.05, 0.0, 2001)[1:]])
+    force = loop(made, 1e3 * x, 0.5)
+    opening = force[2001:]
+    assert force[:400] == pytest.approx(0.0)  # in the slack nothing resists
+    assert force[2000] == pytest.approx(10.0 * 40.0 + 100.0 * 0.5)
+    assert opening.min() == 0.0
+    # 2 c v over the way, but where the spring is weaker than the damper, which takes what the spring gives
+    weak = 100.0 * 0.5 / 10.0  # mm
+    burnt = 50.0 * 40.0 + 50.0 * (40.0 - weak) + 0.5 * 50.0 * weak
+    middle = 0.5 * (force[1:] + force[:-1])
+    assert (middle * np.diff(1e3 * x)).sum() == pytest.approx(burnt, rel=2e-3)
+    assert greatest_damping(made) == pytest.approx(1e5)

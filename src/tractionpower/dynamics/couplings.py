@@ -182,6 +182,7 @@ def _gear_row(gear: Gear, curves: Curve) -> tuple[float, ...]:
         N_PER_M * gear.relaxing_stiffness_kn_per_mm / series,
         series * 1e-3 * gear.stroke_mm if gear.stroke_mm is not None else math.inf,
         N_PER_M * solid / series if solid is not None else locked,
+        1e3 * gear.locked_damping_kns_per_m / series,
     )
 
 
@@ -201,12 +202,13 @@ def _gear_stiffness(gear: Gear, solid: bool) -> float:
 
 def _gear_damping(gear: Gear) -> float:
     """Return the greatest tangent dF/dv of a gear up to its stroke or last point [N s/m]."""
+    parts = 1e3 * gear.locked_damping_kns_per_m / gear.in_series
     if gear.locked_stiffness_kn_per_mm is not None:
-        return 0.0
+        return parts
     load = loading_curve(gear)
     x = load[-1][0] if gear.stroke_mm is None else gear.in_series * 1e-3 * gear.stroke_mm
     force = force_at(load, x)
     if gear.wedge is None:
-        return (force - min(force, force_at(unloading_curve(gear), x))) / gear.blending_mps
+        return parts + (force - min(force, force_at(unloading_curve(gear), x))) / gear.blending_mps
     high, low = wedge_factors(gear.wedge, gear.wedge.kinetic_friction)
-    return force * (high - low) / gear.wedge.blending_mps
+    return parts + force * (high - low) / gear.wedge.blending_mps

@@ -133,6 +133,7 @@ GEAR = np.dtype(
         ("relaxing_n_per_m", "f8"),
         ("stroke_m", "f8"),  # infinite: never solid
         ("solid_n_per_m", "f8"),
+        ("locked_damping_ns_per_m", "f8"),  # of the parts in series, while the gear is deflected
     ]
 )
 """One side of a coupling."""

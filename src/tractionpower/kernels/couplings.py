@@ -19,7 +19,7 @@ _NEAREST = 1e-6
 
 @inlined
 def coupling_force(chain, link, row, stretch_m, rate_mps):
-    """Return the force of a coupling [N], tension positive, and the part of its damper in it; nothing is changed.
+    """Return the force of a coupling [N], tension positive, and the part of its dampers in it; nothing is changed.
 
     Parameters
     ----------
@@ -37,11 +37,17 @@ def coupling_force(chain, link, row, stretch_m, rate_mps):
     x = stretch_m - row.half_slack_m
     if x > 0.0:
         gear = chain.gears[row.draw]
-        force_n += _gear_force(chain.curves, gear, x, -rate_mps, link.draw_n, link.draw_m) + _solid_force(gear, x)
+        pull = _gear_force(chain.curves, gear, x, -rate_mps, link.draw_n, link.draw_m) + _solid_force(gear, x)
+        lost = _locked_damping(gear, pull, rate_mps)
+        force_n += pull + lost
+        damper_n += lost
     x = -stretch_m - row.half_slack_m
     if x > 0.0:
         gear = chain.gears[row.buff]
-        force_n -= _gear_force(chain.curves, gear, x, rate_mps, link.buff_n, link.buff_m) + _solid_force(gear, x)
+        push = _gear_force(chain.curves, gear, x, rate_mps, link.buff_n, link.buff_m) + _solid_force(gear, x)
+        lost = _locked_damping(gear, push, -rate_mps)
+        force_n -= push + lost
+        damper_n -= lost
     return force_n, damper_n
 
 
@@ -55,13 +61,15 @@ def commit_coupling(chain, link, row, stretch_m, rate_mps):
         gear = chain.gears[row.draw]
         draw_m = min(x, gear.stroke_m)
         draw_n = _gear_force(chain.curves, gear, x, -rate_mps, link.draw_n, link.draw_m)
-        force_n += draw_n + _solid_force(gear, x)
+        pull = draw_n + _solid_force(gear, x)
+        force_n += pull + _locked_damping(gear, pull, rate_mps)
     x = -stretch_m - row.half_slack_m
     if x > 0.0:
         gear = chain.gears[row.buff]
         buff_m = min(x, gear.stroke_m)
         buff_n = _gear_force(chain.curves, gear, x, rate_mps, link.buff_n, link.buff_m)
-        force_n -= buff_n + _solid_force(gear, x)
+        push = buff_n + _solid_force(gear, x)
+        force_n -= push + _locked_damping(gear, push, -rate_mps)
     link.force_n, link.stretch_m = force_n, stretch_m
     link.draw_n, link.draw_m, link.buff_n, link.buff_m = draw_n, draw_m, buff_n, buff_m
 
@@ -108,6 +116,12 @@ def _gear_force(curves, gear, x, opening, before_n, before_m):
 def _solid_force(gear, x):
     """Return what the solid parts add beyond the stroke [N]."""
     return gear.solid_n_per_m * (x - gear.stroke_m) if x > gear.stroke_m else 0.0
+
+
+@inlined
+def _locked_damping(gear, force_n, closing_mps):
+    """Return what the damping of the parts in series adds to the force of a gear that is loaded at a speed [N]; never a pull."""
+    return max(gear.locked_damping_ns_per_m * closing_mps, -force_n)
 
 
 @inlined

@@ -36,6 +36,7 @@ def coupling_data(settings: Settings, problems: list[Problem]) -> tuple[dict[str
         "locked_stiffness_kn_per_mm": settings.number("locked"),
         "relaxing_stiffness_kn_per_mm": settings.number("relaxing"),
         "in_series": int(settings.number("gears")),
+        "locked_damping_kns_per_m": settings.number("locked_damping"),
     }
     limit_m, half_slack_m = settings.optional("hard_limit"), 0.5 * settings.number("slack")
     if limit_m is not None:
@@ -63,7 +64,7 @@ def _coupling_mark(settings: Settings) -> Mark:
     draw = Mark(settings.label, stages.line, {
         "loading": stages, "wedge": wedge, "locked_stiffness_kn_per_mm": at("locked"),
         "relaxing_stiffness_kn_per_mm": at("relaxing"), "stroke_mm": at("hard_limit"),
-        "in_series": at("gears"),
+        "in_series": at("gears"), "locked_damping_kns_per_m": at("locked_damping"),
     })  # fmt: skip
     return Mark(settings.label, 0, {"slack_mm": at("slack"), "draw": draw})
 

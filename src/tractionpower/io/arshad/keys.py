@@ -93,6 +93,8 @@ FILLED: tuple[Key, ...] = (
     Key("knee", ("First stage deflection",), "length", "50 mm", "Arshad et al., eq. 8", 1e-6, 1.0),
     Key("gears", ("Draft gears in series",), "count", "1", "the stages are read as those of the whole connection", 1.0, 4.0),
     Key("blending", ("Friction blending speed",), "speed", "0.1 m/s", "assumed: v_f has no number in the paper", 1e-6, 10.0),
+    Key("locked_damping", ("Locked damping",), "damping", "200 N s/mm", "assumed: some 4 % of the mode of two 25 t cars",
+        most=1e5),
     Key("net_ratio", ("Net Braking Ratio", "NBR"), "share", "0.12", "assumed", 1e-6, 5.0),
     Key("speed_resistance", ("Speed Resistance Coefficient",), "speed_resistance", "0.03 lb/ton/mph",
         f"Canadian National, by {_TPS}", most=10.0),

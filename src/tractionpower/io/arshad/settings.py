@@ -155,7 +155,15 @@ def _value(key: Key, text: str) -> float | str | Told:
 
 def _bounds(key: Key) -> str:
     # In the units of the declarations; bounds near 0 only keep 0 itself out.
-    unit = {"time": " s", "length": " m", "stiffness": " kN/mm", "angle": "°", "pressure": " bar", "speed": " m/s"}
+    unit = {
+        "time": " s",
+        "length": " m",
+        "stiffness": " kN/mm",
+        "damping": " kN s/m",
+        "angle": "°",
+        "pressure": " bar",
+        "speed": " m/s",
+    }
     suffix = unit.get(key.kind, "")
     low = "above 0" if key.least < 1e-3 and key.least > 0 else f"at least {key.least:g}{suffix}"
     return low if math.isinf(key.most) else f"{low}, at most {key.most:g}{suffix}"

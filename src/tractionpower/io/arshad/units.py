@@ -18,7 +18,7 @@ LB_PER_TON = 0.5
 """Resistance of 1 lb per short ton of 2000 lb [N/kN]."""
 
 Dimension = Literal[
-    "time", "length", "stiffness", "angle", "speed", "pressure", "share", "force", "power", "mass", "area",
+    "time", "length", "stiffness", "damping", "angle", "speed", "pressure", "share", "force", "power", "mass", "area",
     "resistance", "speed_resistance", "curve_resistance", "grade", "degrees", "number", "count",
 ]  # fmt: skip
 
@@ -30,6 +30,7 @@ UNITS: dict[Dimension, dict[str, float]] = {
         "miles": 1000.0 * MILE_KM,
     },  # [m]
     "stiffness": {"n/mm": 1e-3, "kn/mm": 1.0, "mn/m": 1.0, "n/m": 1e-6, "lb/in": POUND_N / INCH_M * 1e-6},  # [kN/mm]
+    "damping": {"ns/mm": 1.0, "kns/m": 1.0, "ns/m": 1e-3, "lbs/in": POUND_N / INCH_M * 1e-3},  # [kN s/m]
     "angle": {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0},
     "speed": {"m/s": 1.0, "km/h": 1.0 / 3.6, "kmh": 1.0 / 3.6, "mph": MILE_KM / 3.6, "ft/s": FOOT_M},  # [m/s]
     "pressure": {"psi": PSI_BAR, "psig": PSI_BAR, "bar": 1.0, "kpa": 0.01},  # [bar], gauge

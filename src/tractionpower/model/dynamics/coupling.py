@@ -64,6 +64,10 @@ class Gear(Declaration):
     solid_stiffness_kn_per_mm: Real | None = field(
         "solid_stiffness_kn_per_mm", "Stiffness beyond the stroke; left out: the locked one.", above=0, default=None
     )
+    locked_damping_kns_per_m: Real = field(
+        "locked_damping_kns_per_m", "Viscous damping of the parts in series with the gear, while it is deflected; never pulls it"
+        " back.", at_least=0, default=0.0,
+    )  # fmt: skip
     in_series: Count = Field(
         default=1, ge=1, le=4, description="Equal gears one behind the other: all figures are of one, deflections add up."
     )
