@@ -21,9 +21,11 @@ from PIL import Image
 import tractionpower as tp
 from tractionpower.cli import main
 from tractionpower.dynamics.couplings import loop
+from tractionpower.dynamics.traindyn.stations_run import run_stations
 from tractionpower.io.documents import read_document
 from tractionpower.io.scenario_files import load_scenario
 from tractionpower.model.dynamics.coupling import Coupling
+from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.model.report import Document, Report
 from tractionpower.reporting.facts.outages import Outages
 from tractionpower.reporting.facts.run_data import RunData
@@ -32,11 +34,14 @@ from tractionpower.reporting.figures.delays.delay_graph import delay_graphs
 from tractionpower.reporting.figures.many.contingency_figures import envelope_voltage
 from tractionpower.reporting.figures.many.outage_map import outage_maps
 from tractionpower.reporting.figures.many.sweep_figures import sweep_figures
+from tractionpower.reporting.figures.stations.path_figures import distance_over_time
+from tractionpower.reporting.figures.stations.topology import topology
 from tractionpower.reporting.figures.supply.energy_flow import energy_flow
 from tractionpower.reporting.figures.supply.ratings_figures import utilisation
 from tractionpower.reporting.figures.supply.voltage_figures import voltage_along_line
 from tractionpower.reporting.figures.trains.coupling_figure import compare_coupling
 from tractionpower.reporting.workbook import write_workbook
+from tractionpower.results.store import MemoryWriter
 
 IMAGES = Path(__file__).parent / "images"
 COUPLINGS = IMAGES.parents[1] / "rollingstock" / "couplings"
@@ -185,7 +190,19 @@ def draw_loops() -> Figure:
     return figure
 
 
+def draw_stations() -> Iterator[tuple[str, Figure]]:
+    """Draw trains on the three stations of TrainDyn, and their places over time."""
+    case = read_document(IMAGES.parents[1] / "rollingstock" / "dynamics" / "traindyn-three-stations" / "case.yaml", StationsCase)
+    writer = MemoryWriter()
+    run_stations(case, writer)
+    rows = writer.tables()["point_masses"].to_pandas()
+    yield "traindyn-topology.png", topology(case, rows)
+    yield "traindyn-distance-time.png", distance_over_time(case, rows)
+
+
 if __name__ == "__main__":
+    for name, drawn in draw_stations():
+        keep(drawn, name)
     keep(draw_loops(), "coupling-loops.png")
     for name, drawn in draw_future():
         keep(drawn, name)
