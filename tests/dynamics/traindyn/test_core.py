@@ -165,7 +165,8 @@ def test_what_is_asked_wrongly():
         (lambda: core.add_tunnel(way, 3), "1 and 2"),
         (lambda: core.add_arc(way, 400.0, between_m=(500.0, 1500.0)), "not on 'line', which is 1000 m long"),
         (lambda: TrainDynamics(method="exact"), "euler, held_speed, fine"),
-        (core.run, "environment"),
+        (core.run, "name the SimPy environment"),
+        (lambda: TrainDynamics(simpy.Environment()).run(simpy.Environment()), "another SimPy environment"),
         (lambda: core.run(simpy.Environment(), 0.0), "above 0"),
         (lambda: core.when(lambda: True), "SimPy environment"),
     ):

@@ -4,6 +4,9 @@ import re
 from pathlib import Path
 
 import pytest
+from point_trains import add, characteristics, run_to
+
+from tractionpower.dynamics.traindyn.core import TrainDynamics
 
 ROOT = Path(__file__).parents[3]
 PAGE = ROOT / "docs" / "dynamics-traindyn.md"
@@ -26,6 +29,16 @@ def test_the_tests_that_it_names_exist():
         known.update(re.findall(r"def (test_\w+)", path.read_text(encoding="utf-8")))
     assert len(named) > 12
     assert named <= known, named - known
+
+
+@pytest.mark.parametrize(("method", "seconds"), [("euler", 116.8), ("fine", 117.0)])
+def test_the_running_times_that_it_tells(method, seconds):
+    core = TrainDynamics(method=method)
+    train = add(core, characteristics(resistance={"a_n_per_kn": 1.6, "c_n_per_kn_per_kmh2": 0.00044}))
+    train.accelerate(speed_kmh=80.0)
+    train.stop(at_m=1500.0)
+    run_to(core, 200.0)
+    assert train.stood_since_s == pytest.approx(seconds, abs=0.05)
 
 
 def test_sine_and_tangent_of_its_steepest_gradient():

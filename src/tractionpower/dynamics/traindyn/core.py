@@ -159,8 +159,10 @@ class TrainDynamics:
             If there is no environment, it is not that of this core, or the period is not above 0.
         """
         env = env if env is not None else self._env
-        if env is None or self._env not in (None, env):
-            raise UsageError("name the SimPy environment of this core: run(env)")
+        if env is None:
+            raise UsageError("name the SimPy environment to run in: run(env)")
+        if self._env not in (None, env):
+            raise UsageError("this core belongs to another SimPy environment; get_instance(env) gives each its own")
         if not 0.0 < period_s < float("inf"):
             raise UsageError(f"a sampling period of {period_s} s; it must be above 0")
         self._env = env
