@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from tractionpower.dynamics.recorder import ChainRecorder
+from tractionpower.kernels import chain_state as cs
 from tractionpower.kernels import chain_tables as ct
 from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.results.kept import input_hash_of
@@ -87,10 +88,10 @@ def fake_bins() -> np.ndarray:
     return np.array([(0.0, 1.0, 25), (-300e3, 20e3, 30), (-2.0, 0.1, 40)], ct.HISTOGRAM)
 
 
-def fake_state() -> ct.ChainState:
+def fake_state() -> cs.ChainState:
     """Return the state at the start."""
     n = WAGONS + 1
-    movers, links, ledger = np.zeros(n, ct.MOVER), np.zeros(n - 1, ct.LINK), np.zeros(1, ct.LEDGER)
+    movers, links, ledger = np.zeros(n, cs.MOVER), np.zeros(n - 1, cs.LINK), np.zeros(1, cs.LEDGER)
     middles = np.cumsum(2.0 * HALF_LENGTHS) - HALF_LENGTHS
     movers["s_m"] = movers["start_m"] = -middles
     pipe = np.array([(0.0, 0.0, 0.0, 1.0, False), *((t, 0.0, level * 1e4, 1.33, False) for t, level in BRAKE)], ct.PIPE)
@@ -102,7 +103,7 @@ def fake_state() -> ct.ChainState:
         )
     ledger["pipe_rows"], ledger["control_rows"] = len(pipe), len(controls)
     bins = fake_bins()
-    return ct.ChainState(
+    return cs.ChainState(
         movers,
         links,
         ledger,
@@ -126,20 +127,20 @@ def fake_run() -> SimpleNamespace:
         _watch(state, turns)
         if step % every == 0:
             chain.append(_chain_row(state))
-            vehicles.append(state.movers[list(ct.VEHICLE_ROW.names)].astype(ct.VEHICLE_ROW))
-            links.append(np.array(list(zip(state.links["force_n"], state.links["stretch_m"], rates, strict=True)), ct.LINK_ROW))
+            vehicles.append(state.movers[list(cs.VEHICLE_ROW.names)].astype(cs.VEHICLE_ROW))
+            links.append(np.array(list(zip(state.links["force_n"], state.links["stretch_m"], rates, strict=True)), cs.LINK_ROW))
     state.ledger["recorded"] = len(chain)
     return SimpleNamespace(
-        chain=np.array(chain, ct.CHAIN_ROW),
+        chain=np.array(chain, cs.CHAIN_ROW),
         vehicles=np.stack(vehicles),
         links=np.stack(links),
-        turns=np.array(turns, ct.TURN),
+        turns=np.array(turns, cs.TURN),
         start=start,
         state=state,
     )
 
 
-def _move(state: ct.ChainState, time_s: float, *, is_first: bool) -> np.ndarray:
+def _move(state: cs.ChainState, time_s: float, *, is_first: bool) -> np.ndarray:
     """Move the train by one step; velocities first. Return the speeds at which the couplings lengthen [m/s]."""
     movers, links, ledger = state.movers, state.links, state.ledger[0]
     h = 0.0 if is_first else STEP_S
@@ -184,7 +185,7 @@ def _move(state: ct.ChainState, time_s: float, *, is_first: bool) -> np.ndarray:
     return rate
 
 
-def _watch(state: ct.ChainState, turns: list[tuple[int, float]]) -> None:
+def _watch(state: cs.ChainState, turns: list[tuple[int, float]]) -> None:
     """Note extremes and turning points of the forces."""
     for j, link in enumerate(state.links):
         force, now = link["force_n"], state.ledger[0]["time_s"]
@@ -193,18 +194,18 @@ def _watch(state: ct.ChainState, turns: list[tuple[int, float]]) -> None:
         if force < link["least_n"]:
             link["least_n"], link["least_at_s"] = force, now
         if link["turning"] == 0.0:
-            if abs(force) < ct.TURN_N:
+            if abs(force) < cs.TURN_N:
                 continue
             turns.append((j, 0.0))
             link["turning"] = np.sign(force)
         if (force - link["turn_n"]) * link["turning"] > 0.0:
             link["turn_n"] = force
-        elif abs(force - link["turn_n"]) >= ct.TURN_N:
+        elif abs(force - link["turn_n"]) >= cs.TURN_N:
             turns.append((j, float(link["turn_n"])))
             link["turn_n"], link["turning"] = force, -link["turning"]
 
 
-def _spend(state: ct.ChainState, control: np.void, h: float) -> None:
+def _spend(state: cs.ChainState, control: np.void, h: float) -> None:
     """Add the time of a step to the bins."""
     speed, force, acceleration = fake_bins()
 
@@ -218,7 +219,7 @@ def _spend(state: ct.ChainState, control: np.void, h: float) -> None:
     state.acceleration[bin_of(state.movers["a_mps2"][0], acceleration)] += h
 
 
-def _chain_row(state: ct.ChainState) -> tuple[Any, ...]:
+def _chain_row(state: cs.ChainState) -> tuple[Any, ...]:
     ledger, control = state.ledger[0], state.controls[state.ledger[0]["control_row"]]
     reduction = state.movers["cylinder_pa"][0] * 1.5 / 3.8
     works = [ledger[name] for name in ("traction_j", "electric_j", "brake_j", "resistance_j", "grade_j", "coupling_j")]
@@ -233,7 +234,7 @@ def _chain_row(state: ct.ChainState) -> tuple[Any, ...]:
     )
 
 
-def record_fake(writer: Any, cuts: tuple[int, ...] = (300, 700), **case: Any) -> tuple[ChainRecorder, ct.ChainState]:
+def record_fake(writer: Any, cuts: tuple[int, ...] = (300, 700), **case: Any) -> tuple[ChainRecorder, cs.ChainState]:
     """Record the fake run into a writer, cut into parts anywhere; return the recorder and the state at the end."""
     made = fake_run()
     recorder = ChainRecorder(fake_scenario(**case), fake_names(), INERTIAS, made.start, writer)

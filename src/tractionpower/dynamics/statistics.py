@@ -59,7 +59,8 @@ class RainflowCounter:
 
         The first one of a series is the force with which it begins.
         """
-        self._waiting.append(turns)
+        if len(turns):
+            self._waiting.append(turns)
         if sum(map(len, self._waiting)) >= WAITING:
             self._count()
 

@@ -74,8 +74,10 @@ class EnergyLedger:
 
     @property
     def gap_share(self) -> float:
-        """The gap over the energy put in; 0 where nothing was."""
-        return abs(self.gap) / self.put_in if self.put_in > 0.0 else 0.0
+        """The gap over the energy put in; where nothing was put in, 0 without a gap and infinite with one."""
+        if self.put_in == 0.0:
+            return 0.0 if self.gap == 0.0 else float("inf")
+        return abs(self.gap) / self.put_in
 
     def as_dict(self) -> dict[str, Any]:
         """Return energies [kWh] and how well they close; none where there is no number."""
