@@ -7,6 +7,7 @@ import pytest
 from chains import AT_ONCE, FULL, LOCOMOTIVE, WAGON, WEDGE, Chained, G, advanced, free, make_chain, pulled, spring
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from scipy.linalg import expm
 
 METHODS = ("symplectic", "rk4", "euler", "variable")
 LAW = settings(max_examples=12, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
@@ -74,6 +75,30 @@ def test_a_free_chain_swings_in_its_modes(n, mode, omega):
     assert np.interp(0.0, -found[: int(0.45 * period / 0.01)], chained.rows["time_s"][: int(0.45 * period / 0.01)]) == (
         pytest.approx(0.25 * period, rel=2e-3)
     )
+
+
+def system_matrix(masses, k, d):
+    """Return the matrix of Zobory and Bekefi, eq. 9, for Y = [v, x]: springs and dampers of a chain that is free at both ends."""
+    n = len(masses)
+    pattern = np.diag(np.r_[1.0, np.full(n - 2, 2.0), 1.0]) - np.eye(n, k=1) - np.eye(n, k=-1)
+    assert np.abs(pattern.sum(axis=1)).max() == 0.0
+    inverse = np.diag(1.0 / np.asarray(masses))
+    return np.block([[-inverse @ (d * pattern), -inverse @ (k * pattern)], [np.eye(n), np.zeros((n, n))]])
+
+
+@pytest.mark.parametrize(("method", "within"), [("rk4", 1e-8), ("variable", 1e-6)])
+def test_a_linear_chain_moves_by_the_system_matrix_of_the_paper(method, within):
+    random = np.random.default_rng(7)
+    masses, factors = random.uniform(20.0, 90.0, 8), random.uniform(1.0, 1.2, 8)
+    run = {"method": method, "step_s": 0.001 if method == "rk4" else 0.1, "tolerance": 1e-9}
+    chained = Chained(free(masses, spring(5.0, damping_kns_per_m=60.0), rotating=factors, run=run))
+    rest = chained.movers["s_m"].copy()
+    v, x = random.uniform(9.8, 10.2, 8), random.uniform(-0.02, 0.02, 8)
+    chained.movers["v_mps"] = v
+    chained.movers["s_m"] += x
+    chained.advance(3.0)
+    exact = expm(3.0 * system_matrix(1e3 * masses * factors, 5e6, 60e3)) @ np.r_[v, x]
+    np.testing.assert_allclose(np.r_[chained.movers["v_mps"], chained.movers["s_m"] - rest], exact, atol=within)
 
 
 def test_a_pull_travels_along_the_train_at_the_speed_of_the_chain():

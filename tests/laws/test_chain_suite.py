@@ -199,3 +199,60 @@ def test_methods_agree_on_the_extremes():
         chained.advance(60.0)
         found.append(float(chained.links["greatest_n"].max()))
     np.testing.assert_allclose(found, found[0], rtol=5e-3)
+
+
+class OwnGears:
+    """A chain with the friction gear `arshad` at equal friction, by arrays and equations of our own; nothing resists."""
+
+    half, locked, relaxing = 0.05, 600e6, 0.6e6
+    tan, mu = np.tan(np.radians(35.0)), 0.2
+
+    def __init__(self, inertia, pull):
+        self.inertia, self.pull = inertia, pull
+        self.memory = np.zeros((2, 2, len(inertia) - 1))
+
+    def force(self, stretch):
+        total = np.zeros_like(stretch)
+        for side, sign in enumerate((1.0, -1.0)):
+            x = np.maximum(sign * stretch - self.half, 0.0)
+            spring = np.where(x <= 0.05, 6e6 * x, 300e3 + 17e6 * (x - 0.05))
+            load = np.minimum(spring * self.tan / (self.tan - self.mu), self.locked * x)
+            unload = np.minimum(np.maximum(spring * self.tan / (self.tan + self.mu), self.relaxing * x), load)
+            force, place = self.memory[side]
+            force = np.clip(force + self.locked * (x - place), unload, load)
+            self.memory[side] = force, x
+            total += sign * force
+        return total
+
+    def speeds(self, start, until_s, h):
+        x, v = np.zeros_like(start), start.copy()
+        for _ in range(round(until_s / h)):
+            middle = x + 0.5 * h * v
+            force = self.force(middle[:-1] - middle[1:])
+            after = v + h * (self.pull + np.r_[0.0, force] - np.r_[force, 0.0]) / self.inertia
+            x, v = x + 0.5 * h * (v + after), after
+        return v
+
+
+def test_friction_gears_and_slack_move_a_train_as_a_second_program_says():
+    scenario = with_friction(
+        train("head and middle", run={"duration_s": 60.0, "step_s": 0.002, "record_every_s": 1.0}, electric_brake=None), 0.2
+    )
+    data = scenario.model_dump()
+    for vehicle in data["vehicles"]:
+        vehicle["resistance"] = {}
+    data["case"] |= {
+        "traction": {"levels": 1, "starting_effort_kn": 300.0, "power_kw": 1e6, "time_constant_s": 0.0},
+        "commands": [{"time_s": 0.0, "drive": 1}],
+    }
+    chained = Chained(DynamicsScenario.model_validate(data))
+    start = 5.0 + np.random.default_rng(3).uniform(-0.1, 0.1, len(chained.movers))
+    chained.movers["v_mps"] = start
+    chained.advance(20.0)
+    pull = np.where(chained.chain.vehicles["engine"] >= 0, 300e3, 0.0)
+    own = OwnGears(chained.chain.vehicles["inertia_kg"], pull).speeds(start, 20.0, 0.002)
+    np.testing.assert_allclose(chained.movers["v_mps"], own, atol=2e-3)
+    assert np.ptp(own) > 0.01
+    assert np.ptp(own - start) > 0.1
+    assert chained.links["greatest_n"].max() > 300e3
+    assert chained.links["least_n"].min() < -50e3
