@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import errno
+import gc
 import socket
 import sys
 import threading
@@ -88,7 +89,7 @@ def drive(what: Drive, opened: Callable[[str], None], *, port: int = 0, leave_s:
     hub = Hub(what.hello)
     serving = _Serving(what, guard, hub, leave_s)
     try:
-        with _shared_often():
+        with _without_hitches():
             why = asyncio.run(serving.run(listening, opened))
     except KeyboardInterrupt:
         why = "interrupted"
@@ -178,11 +179,18 @@ class _Serving:
 
 
 @contextmanager
-def _shared_often() -> Iterator[None]:
-    """Let threads give way to each other sooner: the desk must not wait for a message that is being written."""
+def _without_hitches() -> Iterator[None]:
+    """Keep the interpreter from holding up the desk.
+
+    Threads give way to each other sooner, for the desk must not wait for a message that is being written; and what is loaded
+    by now is left out of the search for garbage, which would take some 50 ms.
+    """
     before = sys.getswitchinterval()
     sys.setswitchinterval(SHARE_S)
+    gc.collect()
+    gc.freeze()
     try:
         yield
     finally:
+        gc.unfreeze()
         sys.setswitchinterval(before)

@@ -174,7 +174,8 @@ export function drawBars(canvas, histogram, name, logarithmic = false) {
   const floor = 0.3; // below half a cycle on a logarithmic axis
   const part = (value) => (logarithmic ? Math.log(Math.max(value, floor) / floor) / Math.log(Math.max(most, 1) * 1.2 / floor) : value / most);
   const y = (value) => height - bottom - part(value) * (height - top - bottom);
-  const shown = logarithmic ? [1, 10, 100, 1000, 10000].filter((tick) => tick <= most) : [0, most];
+  const counts = most < 12 ? [0.5, 1, 2, 5, 10] : [1, 10, 100, 1000, 10000, 100000];
+  const shown = logarithmic ? counts.filter((tick) => tick <= most) : [0, most];
   ctx.lineWidth = 0.7;
   for (const tick of shown) {
     line(ctx, left, y(tick), width - right, y(tick), "pale");

@@ -290,7 +290,7 @@ function drawStatistics() {
       item.canvas.title = `Relative frequency; the darkest cell: ${number(most, 3)}`;
     } else {
       drawBars(item.canvas, data, item.bars, item.logarithmic);
-      if (item.logarithmic) item.value.textContent = `${number(data.bars.reduce((sum, value) => sum + value, 0), 1)} cycles`;
+      if (item.logarithmic) item.value.textContent = number(data.bars.reduce((sum, value) => sum + value, 0), 1);
     }
   }
 }
