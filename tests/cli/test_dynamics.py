@@ -1,9 +1,12 @@
 """``tractionpower dynamics run``: what it writes, says and returns; reports and tables of its folder."""
 
 import json
+import re
 import sys
+from pathlib import Path
 
 import pytest
+from fake_dynamics import fake_results
 
 from tractionpower.cli import main
 from tractionpower.dynamics.session import NotComputableError, Session
@@ -23,6 +26,8 @@ commands:
   - {time_s: 3, drive: 0, brake: full_service}
 run: {duration_s: 12, step_s: 0.005, record_every_s: 0.1}
 """
+
+PAGE = Path(__file__).parents[2] / "docs" / "dynamics.md"
 
 TABLES = {"vehicles", "couplings", "controls", "coupling_extremes", "distributions", "rainflow"}
 
@@ -251,7 +256,7 @@ def test_a_case_of_stations_runs_by_the_same_command(tmp_path, capsys):
     assert results.scenario.name == results.run["name"]
     assert {path.name for path in (folder / "figures").iterdir()} >= {"station_topology.png", "station_distance_time.png"}
     assert not (folder / "report.xlsx").exists()
-    assert "trains that left" in capsys.readouterr().out
+    assert "trains that have left" in capsys.readouterr().out
     assert main(["report", str(folder), "--only", "figures"]) == 0
 
 
@@ -260,3 +265,30 @@ def test_without_simpy_stations_say_what_to_install(tmp_path, monkeypatch, capsy
     assert run("traindyn-three-stations") == 2
     assert "pip install tractionpower[simpy]" in capsys.readouterr().err
     assert not (tmp_path / "reports").exists()
+
+
+# --- the page that tells of it
+
+
+def test_the_case_of_the_page_runs(tmp_path, capsys):
+    (block,) = re.findall(r"```yaml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    (tmp_path / "my-case").mkdir()
+    (tmp_path / "my-case" / "case.yaml").write_text(block, encoding="utf-8")
+    assert run("my-case") == 0
+    (stop,) = Results.open("reports/dynamics-my-case").run["stops"]
+    assert stop["braked_at_s"] == 35.0
+    for line in re.findall(r"^tractionpower dynamics run (.*--set.*)$", PAGE.read_text(encoding="utf-8"), re.MULTILINE):
+        assert run(*line.replace('"', "").split()) == 0
+    assert len(Results.open("long").run["vehicles"]) == 41
+
+
+def test_the_python_of_the_page_runs(tmp_path, capsys):
+    (block,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    exec(compile(block, str(PAGE), "exec"), {})
+    assert "coupling" in capsys.readouterr().out
+
+
+def test_the_page_names_every_key_figure(tmp_path):
+    figures = {figure["name"] for figure in fake_results(tmp_path / "fake").key_figures}
+    told = set(re.findall(r"`([a-z]\w*)`", PAGE.read_text(encoding="utf-8").split("### Key figures")[1].split("###")[0]))
+    assert figures <= told
