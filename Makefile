@@ -43,6 +43,7 @@ docs: setup    ## reference pages made from the declarations
 
 images: setup  ## figures of the README drawn anew, from a day of the real line
 	$(BIN)/python docs/make_images.py
+	$(BIN)/python docs/make_screenshot.py
 
 clean:         ## remove what the targets made
 	rm -rf $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

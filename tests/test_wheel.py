@@ -58,6 +58,9 @@ def test_data_travel_in_the_wheel(wheel):
         assert f"tractionpower/_data/rollingstock/{path.parent.name}/{path.name}" in names
     tables = ("limits", "conductors", "duty_classes", "rectifier_units")
     assert {f"tractionpower/data/{table}.csv" for table in tables} <= set(names)
+    page = {path.name for path in (ROOT / "src" / "tractionpower" / "web" / "static").iterdir()}
+    assert {"index.html", "uplot.js", "uplot-LICENSE.txt"} <= page
+    assert {f"tractionpower/web/static/{name}" for name in page} <= set(names)
     assert any(name.endswith("licenses/LICENSE") for name in names)
 
 
