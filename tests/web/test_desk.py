@@ -1,5 +1,7 @@
 """The desk: a session that keeps in step with a clock, obeys orders, tells what is the case."""
 
+from itertools import pairwise
+
 import pytest
 from fake_session import HIGHEST, FakeKeeper, FakeSession
 
@@ -88,6 +90,15 @@ def test_time_passes_by_its_factor(factor):
     session = FakeSession()
     Drive(session, {1: [SetFactor(factor), Action("start")]}, 26)
     assert session.time_s == pytest.approx(1.0 * factor)
+
+
+@pytest.mark.parametrize(("factor", "apart_s"), [(1, 0.04), (2, 0.04), (5, 0.05), (10, 0.1)])
+def test_diagrams_keep_their_resolution_when_time_passes_faster(factor, apart_s):
+    drive = Drive(FakeSession(), {1: [SetFactor(factor), Action("start")]}, 30)
+    times = [point[0] for frame in drive.of("frame") for point in frame["points"]]
+    gaps = [after - before for before, after in pairwise(times)]
+    assert gaps == pytest.approx([apart_s] * len(gaps))
+    assert times[-1] == pytest.approx(drive.of("frame")[-1]["snapshot"]["time_s"])
 
 
 def test_slower_and_faster_stop_at_the_ends():

@@ -7,14 +7,16 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict
 from queue import Empty, SimpleQueue
+from typing import Any
 
 from tractionpower.web.cab import Keeper, Publish, Session
 from tractionpower.web.controls import Controls
+from tractionpower.web.messages import chart_point
 from tractionpower.web.orders import Action, Order, SetFactor
 from tractionpower.web.pacing import FACTORS, Pace, Pacer, Rate
 
 FRAME_TICKS = 4
-"""Ticks of the model between two frames: 25 frames a second."""
+"""Ticks of the model between two frames: 25 frames a second. Diagrams have a point for as much simulated time, or for a tick."""
 
 STATISTICS_S = 1.0
 """Clock time between two messages of statistics [s]."""
@@ -55,7 +57,8 @@ class Desk:
         self._orders: SimpleQueue[Order] = SimpleQueue()
         self._stop = threading.Event()
         self._steps, self._frames = Rate(clock), Rate(clock)
-        self._sent = 0
+        self._sent = self._ticks = 0
+        self._points: list[list[Any]] = []
         self._aim_s = session.time_s
         self._statistics_at = self._keep_at = clock()
         self.paused, self.factor = True, FACTORS[0]
@@ -110,9 +113,13 @@ class Desk:
         return "stopped"
 
     def _advance(self) -> None:
-        """Compute what belongs to one tick."""
+        """Compute what belongs to one tick; diagrams get a point as often as that, however fast time passes."""
         self._aim_s += self._pacer.tick_s * self.factor
         self._session.advance(self._aim_s)
+        self._ticks += self.factor
+        if self._ticks >= FRAME_TICKS:
+            self._ticks = 0
+            self._points.append(chart_point(self._session.snapshot()))
 
     def _obey(self) -> None:
         while True:
@@ -163,7 +170,8 @@ class Desk:
             frames_per_s=self._frames.note(self._sent),
         )
         desk = {"paused": self.paused, "factor": self.factor, "levels": self._controls.levels} | asdict(pace)
-        self._publish("frame", {"snapshot": snapshot, "desk": desk})
+        points, self._points = self._points, []
+        self._publish("frame", {"snapshot": snapshot, "desk": desk, "points": points})
         now = self._clock()
         if now >= self._statistics_at:
             self._statistics_at = now + STATISTICS_S

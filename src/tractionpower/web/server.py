@@ -11,7 +11,7 @@ from typing import Any
 from aiohttp import WSMsgType, web
 
 from tractionpower.web.guard import Guard, guarded
-from tractionpower.web.messages import chart_point, frame_message, message, statistics_message
+from tractionpower.web.messages import frame_message, message, statistics_message
 from tractionpower.web.orders import LONGEST, Order, read_order
 
 KINDS = {
@@ -69,7 +69,7 @@ class Hub:
     def send(self, kind: str, content: Mapping[str, Any]) -> None:
         """Send a message to all pages; to be called in the thread of the server."""
         if kind == "frame":
-            self._history.append(chart_point(content["snapshot"]))
+            self._history.extend(content["points"])
             text = frame_message(content)
         elif kind == "statistics":
             text = self._statistics = statistics_message(content)

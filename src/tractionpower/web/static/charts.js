@@ -94,10 +94,6 @@ export class Strips {
     }
   }
 
-  addSnapshot(snapshot) {
-    this.add(NAMES.map((name) => snapshot[name] ?? null));
-  }
-
   #dataOf(chart, first) {
     return [this.data[0].slice(first), ...chart.what.names.map((name) => this.data[NAMES.indexOf(name)].slice(first))];
   }

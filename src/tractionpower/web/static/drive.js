@@ -206,7 +206,7 @@ function makeHints(labels) {
 function show(message) {
   frame = message;
   const { snapshot } = frame;
-  strips.addSnapshot(snapshot);
+  frame.points.forEach((point) => strips.add(point));
   const forces = snapshot.forces_kn ?? [];
   if (extremes.most.length !== forces.length) extremes = { most: forces.map(() => 0), least: forces.map(() => 0) };
   forces.forEach((force, j) => {
