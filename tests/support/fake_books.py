@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from fake_dynamics import fake_results, fake_scenario
 from fake_feasibility import REMEDIES, judged
 from fake_results import NASTY, make_case
 from fake_sizing import outages, sized
@@ -9,17 +10,20 @@ from small_studies import load, make_scenario
 
 from tractionpower.cosimulation.simulate import simulate
 from tractionpower.io.library import change
+from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.model.scenario import Scenario
 from tractionpower.results.results import Results
 from tractionpower.studies.compare.study import compare
 from tractionpower.studies.sweep.study import sweep
 
 RESISTANCE = "supply.substations[A].internal_resistance_ohm"
-KINDS = ("run", "feasibility", "size", "contingency", "sweep", "compare")
+KINDS = ("run", "feasibility", "size", "contingency", "sweep", "compare", "dynamics")
 
 
-def make_kind(kind: str, folder: Path, *, nasty: bool = False) -> tuple[Results, Scenario]:
+def make_kind(kind: str, folder: Path, *, nasty: bool = False) -> tuple[Results, Scenario | DynamicsScenario]:
     """Return results and scenario of a kind of study; `folder` takes the runs that a comparison is made of."""
+    if kind == "dynamics":
+        return _dynamics(folder, nasty)
     if kind in ("sweep", "compare"):
         return (_sweep if kind == "sweep" else _compare)(folder, nasty)
     results, scenario = make_case(trains=len(NASTY) if nasty else 4, substations=9 if kind == "contingency" else 3, nasty=nasty)
@@ -54,3 +58,8 @@ def _compare(folder: Path, nasty: bool) -> tuple[Results, Scenario]:
     for name, one in zip(names, (scenario, change(scenario, [f"{RESISTANCE}=0.06"])), strict=True):
         simulate(one, folder / name)
     return compare([folder / name for name in names]), scenario
+
+
+def _dynamics(folder: Path, nasty: bool) -> tuple[Results, DynamicsScenario]:
+    case = {"name": '=HYPERLINK("x") & <b> &P', "source": "@sum(1) & more"} if nasty else {}
+    return fake_results(folder, **case), fake_scenario(**case)

@@ -51,6 +51,7 @@ FIGURES = (
     "coupling_histogram", "acceleration_histogram", "coupling_cycles", "dynamics_energies",
     "arshad_5_speed", "arshad_6_tractive_effort", "arshad_7_acceleration", "arshad_8_cylinder_pressure", "arshad_9_coupler",
     "arshad_10_relative_position",
+    "station_topology", "station_distance_time", "station_speed_distance",
 )  # fmt: skip
 """Names of all figures but those of measurements, which are called by their series, to tell a misspelt one of a template.
 

@@ -20,7 +20,6 @@ WORKBOOK = "report.xlsx"
 WORKBOOKS = {"compare": "compare.xlsx"}
 """Other names of the workbook, by what ``run.json`` says that results are."""
 
-
 PARTS = frozenset({"workbook", "figures"})
 """Parts of the reports that can be written alone."""
 
@@ -54,7 +53,7 @@ def write_reports(
             hindrances += hindrance
         except OSError as error:
             hindrances.append(f"figures cannot be written into {folder / FIGURES}: {reason_of(error)}")
-    if "workbook" in parts and not isinstance(scenario, StationsCase):
+    if "workbook" in parts and not isinstance(scenario, StationsCase):  # a case of stations has figures alone
         from tractionpower.reporting.workbook import write_workbook
 
         workbook = folder / WORKBOOKS.get(kind, WORKBOOK)

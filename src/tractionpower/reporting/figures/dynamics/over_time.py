@@ -102,7 +102,7 @@ def _levels(axes: Axes, data: ChainData) -> None:
     times, drive, brake = (data.control(name) for name in ("time_s", "drive", "brake"))
     axes.step(times, drive, where="post", color=BLUE, linewidth=1.2, label=tr("drive control u₁, level"))
     axes.step(times, -brake, where="post", color=VERMILION, linewidth=1.2, label=tr("brake control u₂, level, downwards"))
-    axes.set_ylabel(tr("level"))
+    axes.set_ylabel(tr("control level"))
     room(axes, [drive, -brake], 0.12)
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, -1.0), max(high, 1.0))

@@ -9,6 +9,7 @@ from tractionpower.reporting.texts import mark, recorded, tr
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.page import Column, heading_of
 from tractionpower.results.columns import TABLES
+from tractionpower.results.dynamics_columns import DYNAMICS_TABLES
 from tractionpower.studies.sweep.differences import FIGURES
 
 _FIGURES = (
@@ -86,6 +87,9 @@ DYNAMICS = (
 )
 """Notes of the two sheets, those of train dynamics apart."""
 
+OWN_WORDS = {"coupling": mark("coupling between vehicles"), "level": mark("control level")}
+"""Columns of train dynamics whose names mean something else in other tables."""
+
 
 def add(book: Book) -> None:
     """Add the sheets of definitions: of the key figures, and of the columns of the tables that these results have."""
@@ -151,5 +155,6 @@ def _columns(book: Book) -> Iterator[tuple[str, ...]]:
     for table, columns in TABLES.items():
         for column in columns if table in present else ():
             quantity = column.quantity
-            heading = heading_of(quantity.name).split(" [")[0]
+            called = OWN_WORDS.get(quantity.name, "") if table in DYNAMICS_TABLES else ""
+            heading = tr(called) if called else heading_of(quantity.name).split(" [")[0]
             yield recorded(table.replace("_", " ")), heading, quantity.unit, recorded(quantity.meaning), quantity.name

@@ -77,7 +77,7 @@ def _speeds(page: Page, drawn: Drawn) -> None:
     for k, (number, name) in enumerate(drawn.names["vehicles"].items()):
         draw(chart, block, _line(block, name, f"speed{number}", (k, DASHES[k % len(DASHES)])))
     _from_the_start(chart, block)
-    levels = scatter("", "", tr("level"))
+    levels = scatter("", "", tr("control level"))
     for y, words, colour in (("drive", tr("drive control"), "777777"), ("brake", tr("brake control"), "CC79A7")):
         draw(levels, block, Line(words, "time", y, block.first, block.last, colour, "sysDash", THIN))
     levels.y_axis.scaling.min = 0.0

@@ -25,7 +25,7 @@ GROUP = mark("Couplings")
 """Group of the rows of the sheet of acceptance."""
 
 _KINDS = (
-    Column("coupling", widest=26, key="kind"),
+    Column("kind of coupling", widest=26, key="kind"),
     Column("how many", "0", key="count"),
     Column("greatest tension [kN]", "0.0", key="tension"),
     Column("at coupling", "beside", key="tension_at"),
@@ -49,7 +49,7 @@ _COUPLINGS = (
     Column("work taken in [kJ]", "0.00", key="absorbed"),
     Column("of it by the damper [kJ]", "0.00"),
     Column("damage, relative", "0.0000"),
-    Column("coupling", "beside", widest=26, key="kind"),
+    Column("kind of coupling", "beside", widest=26, key="kind"),
     Column("between", "beside", widest=40),
 )
 

@@ -22,6 +22,9 @@ from tractionpower.reporting.workbook.frame.page import Column, Page, heading_of
 _CASE = ("name", "source", "unified_resistance", "grade", "standstill_mps", "units")
 """Fields of the case itself that are told."""
 
+_CALLED = {"units": mark("units of the figures"), "grade": mark("gradient under")}
+"""Fields whose names mean something else elsewhere."""
+
 _GEARS = (
     ("traction", mark("Traction of {vehicles}")),
     ("electric_brake", mark("Electric brake of {vehicles}")),
@@ -45,7 +48,7 @@ _SOURCES = (
     Column("source", "beside", widest=100),
 )
 _COUPLINGS = (
-    Column("coupling", widest=30),
+    Column("kind of coupling", widest=30),
     Column("name", "beside", widest=44),
     Column("how many", "0"),
     Column("status", "beside", widest=34),
@@ -83,7 +86,11 @@ def _case(book: Book, facts: ChainFacts) -> None:
     )
     page.section("Case")
     values = {field.name: field for field in declared(case)}
-    rows = [(heading_of(name), shown(values[name]), tr(values[name].known), recorded(_meaning(name))) for name in _CASE]
+    rows = [
+        (tr(_CALLED[name]) if name in _CALLED else heading_of(name), shown(values[name]), tr(values[name].known),
+         recorded(_meaning(name)))
+        for name in _CASE
+    ]  # fmt: skip
     page.table(SETTINGS, rows)
     settings(page, tr("How it is computed"), case.run)
     settings(page, tr("How the train starts"), case.start)
