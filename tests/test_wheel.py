@@ -54,8 +54,10 @@ def test_data_travel_in_the_wheel(wheel):
         folders = {path.parent.name for path in (ROOT / kind).glob(f"*/{file}")}
         assert folders
         assert {f"tractionpower/_data/{kind}/{folder}/{file}" for folder in folders} <= set(names)
-    for path in (ROOT / "rollingstock").glob("*/*.yaml"):
-        assert f"tractionpower/_data/rollingstock/{path.parent.name}/{path.name}" in names
+    stock = [path for path in (ROOT / "rollingstock").rglob("*.*") if path.suffix in {".yaml", ".csv", ".ini", ".md"}]
+    assert {path.parent.parent.name for path in stock} >= {"rollingstock", "dynamics"}
+    for path in stock:
+        assert f"tractionpower/_data/{path.relative_to(ROOT).as_posix()}" in names
     tables = ("limits", "conductors", "duty_classes", "rectifier_units")
     assert {f"tractionpower/data/{table}.csv" for table in tables} <= set(names)
     page = {path.name for path in (ROOT / "src" / "tractionpower" / "web" / "static").iterdir()}
