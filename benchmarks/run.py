@@ -49,7 +49,7 @@ def _reports(quick: bool) -> str:
 
 
 def _dynamics(quick: bool) -> str:
-    return dynamics.describe(dynamics.measure(*((1, 120.0) if quick else (5, 600.0))))
+    return dynamics.describe(dynamics.measure(*((1, 120.0) if quick else (5, 300.0))))
 
 
 def _peers(quick: bool) -> str:
