@@ -108,6 +108,17 @@ def test_a_second_run_replaces_the_first(case, tmp_path):
     assert Results.open("reports/dynamics-short").run["step_s"] == 0.0025
 
 
+def test_one_vehicle_alone_has_no_couplings(tmp_path, capsys):
+    (tmp_path / "one").mkdir()
+    text = CASE.replace("  - {id: wagon-zobory, count: 2, load_percent: 50}\ncoupling: zobory-linear\n", "")
+    (tmp_path / "one" / "case.yaml").write_text(text, encoding="utf-8")
+    assert run("one") == 0
+    results = Results.open("reports/dynamics-one")
+    assert set(results.tables) == {"vehicles", "controls", "distributions"}
+    assert set(results.table("distributions")["of"]) == {"drive_speed", "brake_speed", "acceleration"}
+    assert "coupling" not in capsys.readouterr().out
+
+
 # --- 1: errors in the inputs
 
 

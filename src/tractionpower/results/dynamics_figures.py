@@ -176,6 +176,8 @@ def motion_figures(motion: Motion, names: Sequence[str]) -> Iterator[KeyFigure]:
         ("greatest_acceleration_mps2", motion.acceleration, "of greatest magnitude of all vehicles, recorded rows"),
         ("greatest_relative_movement_m", motion.relative, "farthest that a vehicle has moved against the first since the start"),
     ):
+        if most is motion.relative and len(names) == 1:
+            continue
         place = f"vehicle {names[most.number]}" if most.number >= 0 else ""
         yield KeyFigure(name, most.value, place, when(most.time_s), definition)
 
