@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
+from tractionpower.dynamics.statistics import MEAN_N, RANGE_N
 from tractionpower.reporting.facts.chain_data import ChainData
 from tractionpower.reporting.facts.spread import LEAST_SHARE, joint_of, rows_of
 from tractionpower.reporting.figures.base.style import BLUE, INK, PAGE, SMALLEST, STYLE, new_figure
@@ -24,6 +25,9 @@ Array = NDArray[Any]
 
 MOST_NUMBERS = 14
 """Columns of a joint distribution whose bins have their numbers written in them."""
+
+MOST_CELLS = 20
+"""Cells of a matrix of cycles in either direction."""
 
 SHADES = "Blues"
 
@@ -151,12 +155,23 @@ def _matrix(figure: Figure, axes: Axes, data: ChainData, rows: pd.DataFrame, per
     axes.set_ylabel(label(data, "force", tr("range")))
     if rows.empty:
         return
-    mean, wide = rows["mean_kn"].to_numpy(float) * per, rows["range_kn"].to_numpy(float) * per
-    counts, x, y = np.histogram2d(mean, wide, bins=16, weights=rows["cycles"].to_numpy(float))
+    mean, wide = rows["mean_kn"].to_numpy(float), rows["range_kn"].to_numpy(float)
+    of_mean, of_range = MEAN_N / 1000.0, RANGE_N / 1000.0  # classes that cycles are kept in: middles, and upper ends
+    edges = _edges(mean.min() - 0.5 * of_mean, mean.max() + 0.5 * of_mean, of_mean), _edges(0.0, wide.max(), of_range)
+    counts, x, y = np.histogram2d(mean, wide - 0.5 * of_range, edges, weights=rows["cycles"].to_numpy(float))
     counts[counts <= 0.0] = np.nan
     most = max(float(np.nanmax(counts)), 1.0)
-    mesh = axes.pcolormesh(x, y, counts.T, cmap=SHADES, norm=LogNorm(0.25, 2.0 * most), edgecolors="white", linewidth=0.3)
+    mesh = axes.pcolormesh(
+        x * per, y * per, counts.T, cmap=SHADES, norm=LogNorm(0.25, 2.0 * most), edgecolors="white", linewidth=0.3
+    )
     bar = figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.06, format=PLAIN)
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
     bar.set_label(tr("cycles"), fontsize=SMALLEST)
     bar.ax.tick_params(labelsize=SMALLEST)
+
+
+def _edges(low: float, high: float, width: float) -> Array:
+    """Return edges that hold some classes of a width each, so that few enough cells are drawn."""
+    classes = max(round((high - low) / width), 1)
+    step = -(-classes // MOST_CELLS)
+    return low + width * step * np.arange(-(-classes // step) + 1)

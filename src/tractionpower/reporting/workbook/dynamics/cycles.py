@@ -17,16 +17,12 @@ from tractionpower.reporting.workbook.frame.page import Column, Page
 CLASSES = 20
 """Classes of the range."""
 
-EXPONENT = 3
-"""Power of the range in the index of damage, that of the program."""
-
 _COUPLINGS = (
     Column("vehicles", widest=26),
     Column("cycles", "0.0", key="cycles"),
     Column("greatest range [kN]", "0.0", key="range"),
     Column("mean of that cycle [kN]", "0.0"),
-    Column("sum of cycles times range³ [kN³]", "exponent", key="damage"),
-    Column("damage, relative", "0.0000", key="share"),
+    Column("damage, relative", "0.0000"),
 )
 
 
@@ -37,8 +33,9 @@ def add(book: Book, drawn: Drawn) -> None:
         return
     page = book.page("Rainflow", "Cycles of the forces of couplings, by rainflow counting")
     page.note(
-        "Counting after ASTM E1049; half cycles count 0.5. Table rainflow has every cycle. The relative damage is an index of the"
-        " program: ranges to the power of 3, over the greatest sum of all couplings."
+        "Counting after ASTM E1049; half cycles count 0.5. Cycles stand in classes of range and mean; a class is told by its upper"
+        " end and its middle. The relative damage is an index of the program from the cycles before they are classed: ranges to the"
+        " power of 3, over the greatest sum of all couplings."
     )
     page.section("Couplings from the front of the train")
     _couplings(page, data)
@@ -49,20 +46,15 @@ def add(book: Book, drawn: Drawn) -> None:
 def _couplings(page: Page, data: ChainData) -> None:
     rows = data.table("rainflow")
     by_coupling = dict(list(rows.groupby(rows["coupling"].astype(str), sort=False)))
-    told: list[list[Any]] = []
+    damage = dict(zip(data.couplings, data.extremes["damage"], strict=True)) if len(data.extremes) else {}
+    told: list[tuple[Any, ...]] = []
     for name in data.couplings:
         own = by_coupling.get(name)
         if own is None or own.empty:
-            told.append([name, 0.0, None, None, 0.0])
+            told.append((name, 0.0, None, None, damage.get(name)))
             continue
-        ranges, counts = own["range_kn"].to_numpy(float), own["cycles"].to_numpy(float)
-        most = int(ranges.argmax())
-        told.append([name, counts.sum(), ranges[most], own["mean_kn"].iloc[most], float(counts @ ranges**EXPONENT)])
-    first, last = page.next + 1, page.next + len(told)
-    greatest = max((row[-1] for row in told), default=0.0)
-    area = f"E${first}:E${last}"
-    for row in told:
-        row.append(Formula(f"IF(MAX({area})>0,{{damage}}/MAX({area}),0)", row[-1] / greatest if greatest > 0.0 else 0.0))
+        most = int(own["range_kn"].to_numpy(float).argmax())
+        told.append((name, own["cycles"].sum(), own["range_kn"].iloc[most], own["mean_kn"].iloc[most], damage.get(name)))
     page.table(_COUPLINGS, told)
 
 

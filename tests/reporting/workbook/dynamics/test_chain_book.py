@@ -1,0 +1,131 @@
+"""The workbook of train dynamics: forces held against what couplings endure, sums that add up, words in both languages."""
+
+import numpy as np
+import pytest
+from fake_dynamics import fake_results, fake_scenario
+from openpyxl import load_workbook
+from read_workbook import read_table, texts
+
+from tractionpower.model.report import SHEETS, Report
+from tractionpower.reporting.texts import language, recorded
+from tractionpower.reporting.workbook import write_workbook
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    return fake_results(tmp_path_factory.mktemp("chain"))
+
+
+@pytest.fixture(scope="module")
+def paths(results, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("books")
+    chosen = ("en", "pl")
+    return {one: write_workbook(results, fake_scenario(), folder / f"{one}.xlsx", Report(language=one)) for one in chosen}
+
+
+@pytest.fixture(scope="module")
+def book(paths):
+    return load_workbook(paths["en"], data_only=True)
+
+
+@pytest.fixture(scope="module")
+def formulas(paths):
+    return load_workbook(paths["en"])
+
+
+def test_all_sheets_are_known_by_name(book):
+    assert set(book.sheetnames) <= set(SHEETS)
+    assert {"Cover", "Acceptance", "Coupling forces", "Stops", "Energy", "Rainflow", "Inputs couplings", "Not covered"} <= set(
+        book.sheetnames
+    )
+
+
+def test_the_greatest_force_of_a_kind_is_a_formula_and_is_judged(book, formulas, results):
+    (kind,) = read_table(book["Coupling forces"], 2)
+    extremes = results.table("coupling_extremes")
+    for side, limit in (("tension", 850.0), ("compression", 60.0)):
+        most = extremes[f"greatest_{side}_kn"]
+        assert kind[f"greatest {side} [kN]"] == pytest.approx(most.max())
+        assert kind[f"endurable {side} [kN]"] == limit
+    assert kind["at coupling"] == extremes["coupling"][extremes["greatest_tension_kn"].argmax()]
+    assert kind["used of it [%]"] == pytest.approx(100.0 * extremes["greatest_tension_kn"].max() / 850.0)
+    (row,) = [row for row in read_table(formulas["Coupling forces"], 2)]
+    assert row["greatest tension [kN]"].startswith("=SUMPRODUCT(MAX(")
+    verdicts = {row["what is judged"]: row for row in read_table(book["Acceptance"])}
+    assert {row["verdict"] for row in verdicts.values()} == {"met"}
+    assert verdicts["greatest compression of couplings linear-5"]["limit value"] == 60.0
+    assert "=coupling_compression_1" in [row["found"] for row in read_table(formulas["Acceptance"])]
+
+
+def test_a_force_beyond_its_limit_is_violated(tmp_path):
+    coupling = fake_scenario().couplings[0].model_copy(update={"endurable_tension_kn": 100.0})
+    scenario = fake_scenario().model_copy(update={"couplings": (coupling,)})
+    results = fake_results(tmp_path / "run")
+    found = results.run["verdicts"][0]
+    results.run["verdicts"][0] = found | {"limit_value": 100.0, "met": False}
+    book = load_workbook(write_workbook(results, scenario, tmp_path / "report.xlsx"), data_only=True)
+    verdicts = {row["what is judged"]: row["verdict"] for row in read_table(book["Acceptance"])}
+    assert verdicts == {
+        "greatest tension of couplings linear-5": "violated", "greatest compression of couplings linear-5": "met"
+    }  # fmt: skip
+    assert max(row["used of what is endured [%]"] for row in read_table(book["Coupling forces"])) > 100.0
+
+
+def test_stops_and_energies_are_those_of_the_run(book, results):
+    (stop,) = read_table(book["Stops"])
+    for heading, name in (("stopping distance [m]", "stopping_distance_m"), ("stopping time [s]", "stopping_time_s"),
+                          ("mean deceleration over the distance, v²/2s [m/s²]", "mean_deceleration_mps2")):  # fmt: skip
+        assert stop[heading] == pytest.approx(results.key_figure(name))
+    parts = read_table(book["Energy"])
+    put_in, taken = (sum(row["energy [kWh]"] for row in parts if row["side"] == side) for side in ("put in", "taken"))
+    assert put_in == pytest.approx(taken, rel=1e-9)
+    assert put_in == pytest.approx(results.key_figure("traction_energy_kwh"))
+
+
+def test_shares_of_the_time_come_to_all_of_it(book):
+    for table in (1, 2):
+        assert sum(row["sum [%]"] for row in read_table(book["Distributions"], table)) == pytest.approx(100.0)
+    for table in (3, 4):
+        rows = read_table(book["Distributions"], table)
+        assert rows[-1]["share up to here [%]"] == pytest.approx(100.0)
+        assert np.diff([row["share up to here [%]"] for row in rows]).min() >= 0.0
+
+
+def test_cycles_are_all_there(book, results):
+    rows = results.table("rainflow")
+    told = {row["vehicles"]: row for row in read_table(book["Rainflow"])}
+    for name, own in rows.groupby("coupling", observed=True):
+        assert told[name]["cycles"] == pytest.approx(own["cycles"].sum())
+    assert max(row["damage, relative"] for row in told.values()) == 1.0
+    damage = results.table("coupling_extremes").set_index("coupling")["damage"]
+    assert [row["damage, relative"] for row in told.values()] == pytest.approx(damage.to_list())
+
+
+def test_extracts_have_a_sensible_number_of_rows_and_the_ends(book, results):
+    rows = read_table(book["Course of the train"])
+    assert len(rows) <= 600
+    assert (rows[0]["time [s]"], rows[-1]["time [s]"]) == (0.0, results.run["end_s"])
+    force = results.table("couplings").query("coupling == '1-2'")["force_kn"]
+    assert max(row["force of 1-2 [kN]"] for row in read_table(book["Course of couplings"])) == pytest.approx(force.max())
+
+
+def test_it_says_what_it_does_not_prove(book):
+    told = " ".join(texts(book["Not covered"]))
+    assert "Benchmarking" in told
+    assert "UIC" in told
+    assert "no certification is claimed" in " ".join(texts(book["Cover"]))
+
+
+def test_everything_recorded_has_polish_words(results):
+    with language("pl"):
+        for figure in results.key_figures:
+            assert recorded(figure["definition"]) != figure["definition"], figure["name"]
+            assert not figure["place"] or recorded(figure["place"]) != figure["place"]
+
+
+def test_the_polish_book_speaks_of_couplings_as_railways_do(paths):
+    book = load_workbook(paths["pl"], data_only=True)
+    words = " ".join(text for sheet in book for text in texts(sheet))
+    assert "sprzęg" in words
+    assert "przewodzie głównym" in words
+    assert "greatest tension of" not in words
