@@ -33,8 +33,10 @@ def add(book: Book, drawn: Drawn) -> None:
         return
     page = book.page("Rainflow", "Cycles of the forces of couplings, by rainflow counting")
     page.note(
-        "Counting after ASTM E1049; half cycles count 0.5. Cycles stand in classes of range and mean; a class is told by its upper"
-        " end and its middle. The relative damage is an index of the program from the cycles before they are classed: ranges to the"
+        "Counting after ASTM E1049; half cycles count 0.5. Cycles stand in classes of range and mean; a class is told by"
+        " its upper"
+        " end and its middle. The relative damage is an index of the program from the cycles before they are classed:"
+        " ranges to the"
         " power of 3, over the greatest sum of all couplings."
     )
     page.section("Couplings from the front of the train")
