@@ -87,3 +87,42 @@ def test_friction_at_rest_is_recorded_as_it_acts():
     assert row["v_mps"] == 0.0 and row["a_mps2"] == 0.0
     assert row["brake_n"] + row["resistance_n"] == pytest.approx(80e3 * 9.80665 * 0.005)
     assert row["grade_n"] == pytest.approx(80e3 * 9.80665 * 0.005)
+
+
+def test_extremes_of_vehicles_are_those_of_all_steps(every_step):
+    rows, movers = every_step.vehicle_rows, every_step.movers
+    speed = rows["v_mps"]
+    assert movers["greatest_mps"] == pytest.approx(speed.max(axis=0))
+    gained = np.diff(speed, axis=0) / STEP_S
+    assert np.abs(movers["sharpest_mps2"]) == pytest.approx(np.abs(gained).max(axis=0))
+    moved = rows["s_m"] - rows["s_m"][0]
+    against = moved - moved[:, :1]
+    assert np.abs(movers["furthest_m"]) == pytest.approx(np.abs(against).max(axis=0))
+    assert np.sign(movers["furthest_m"][1:]) == pytest.approx(-1.0)  # drawn out behind the locomotive
+
+
+def test_marks_tell_where_controls_changed_and_where_the_train_stood(every_step):
+    marks, rows = every_step.marks, every_step.rows
+    taken = marks[marks["control"] >= 0]
+    assert taken["control"].tolist() == [1, 2, 3, 4] and taken["time_s"].tolist() == [0.0, 3.0, 12.0, 20.0]
+    at = np.searchsorted(rows["time_s"], marks["time_s"] - 1e-9)
+    assert marks["s_m"] == pytest.approx(every_step.vehicle_rows["s_m"][at, 0])
+    assert marks["v_mps"] == pytest.approx(every_step.vehicle_rows["v_mps"][at, 0])
+    standing = (every_step.vehicle_rows["v_mps"] == 0.0).all(axis=1)
+    came = rows["time_s"][1:][standing[1:] & ~standing[:-1]]
+    assert marks["time_s"][marks["control"] < 0] == pytest.approx(came)
+
+
+def test_a_train_that_rolls_back_has_its_greatest_speed_backwards():
+    gradients = [{"from_m": -5000.0, "to_m": 5000.0, "permille": 10.0}]
+    chained = Chained(free([80.0] * 3, spring(10.0), track={"gradients": gradients, "rounding_radius_m": 0.0},
+                           run={"duration_s": 10.0}))  # fmt: skip
+    chained.advance(1e9)
+    assert chained.movers["greatest_mps"] == pytest.approx(-0.0980665 * 10.0)
+
+
+def test_many_commands_find_room_in_the_next_block():
+    commands = [{"time_s": 0.001 * k, "drive": k % 2} for k in range(2500)]
+    chained = Chained(pulled(1, spring(10.0), commands=commands, run={"duration_s": 4.0}))
+    chained.advance(1e9)
+    assert chained.marks["control"].tolist() == list(range(1, 2501))

@@ -14,6 +14,7 @@ from tractionpower.kernels.chain_state import (
     BUFFER_FULL,
     CHAIN_ROW,
     LINK_ROW,
+    MARK,
     TURN,
     VEHICLE_ROW,
     ChainBuffers,
@@ -121,9 +122,11 @@ class Chained:
             np.zeros((rows, n), VEHICLE_ROW),
             np.zeros((rows, n - 1), LINK_ROW),
             np.zeros(50_000, TURN),
-            np.zeros(2, np.int64),
+            np.zeros(1000, MARK),
+            np.zeros(3, np.int64),
         )
         self._taken: list[tuple[NDArray[np.void], ...]] = []
+        self.marks = np.zeros(0, MARK)
 
     def advance(self, until_s: float) -> int:
         """Run until a time; the buffer is emptied whenever it is full. Returns why the kernel came back in the end."""
@@ -132,6 +135,7 @@ class Chained:
             used = self._buffers.used[0]
             self._taken.append(tuple(kept[:used].copy() for kept in self._buffers[:3]))
             self.turns = self._buffers.turns[: self._buffers.used[1]].copy()
+            self.marks = np.concatenate([self.marks, self._buffers.marks[: self._buffers.used[2]]])
             self._buffers.used[:] = 0
             if reason != BUFFER_FULL:
                 return int(reason)

@@ -64,7 +64,8 @@ class CompiledChain:
         stretch = side * np.maximum(self.chain.couplings["half_slack_m"], 0.0)
         movers["s_m"] = -self.chain.vehicles["behind_m"] - np.concatenate(([0.0], np.cumsum(stretch)))
         movers["start_m"] = movers["s_m"]
-        movers["v_mps"] = start.speed_kmh / KMH
+        movers["v_mps"] = movers["greatest_mps"] = start.speed_kmh / KMH
+        ledger["standing"] = start.speed_kmh == 0.0
         movers["cylinder_pa"] = movers["cylinder_before_pa"] = settled_cylinder_pa(self.chain.air[0], self.pipe[0])
         movers["cylinder_pa"][self.chain.vehicles["brake"] < 0] = 0.0
         movers["cylinder_before_pa"] = movers["cylinder_pa"]

@@ -78,6 +78,7 @@ class ChainRecorder:
         standstill = max(scenario.case.standstill_mps, 1e-6)
         self.motion = Motion(state.movers["s_m"].copy(), standstill)
         self.notes: list[str] = []
+        self.marks: list[Array] = []
         self._is_closed = False
         self.cycles: RainflowCounter | None = None
         try:
@@ -85,8 +86,9 @@ class ChainRecorder:
         except UsageError as error:
             self.notes.append(f"no cycles are counted: {error}")
 
-    def add(self, chain: Array, vehicles: Array, links: Array, turns: Array) -> None:
-        """Take recorded rows: records of `CHAIN_ROW`, `VEHICLE_ROW`, `LINK_ROW` and `TURN`, those in use."""
+    def add(self, chain: Array, vehicles: Array, links: Array, turns: Array, marks: Array) -> None:
+        """Take recorded rows: records of `CHAIN_ROW`, `VEHICLE_ROW`, `LINK_ROW`, `TURN` and `MARK`, those in use."""
+        self.marks.append(marks)
         if len(chain):
             time_s = chain["time_s"]
             self.writer.append("controls", controls_table(chain, kinetic_j(vehicles["v_mps"], self._inertia_kg)))

@@ -16,6 +16,7 @@ from tractionpower.kernels.chain_state import (
     CHAIN_ROW,
     ENDED,
     LINK_ROW,
+    MARK,
     NOT_FINITE,
     STEP_TOO_SMALL,
     TURN,
@@ -35,17 +36,22 @@ TURNS = 65_536
 """Turning points of coupling forces that a block may note, at least; a step may note one for each coupling."""
 
 
+MARKS = 256
+"""Commands and standstills that a block may note."""
+
+
 class NotComputableError(TractionPowerError):
     """The motion cannot be computed on: a state is no number any more, or a variable step has become too small."""
 
 
 class Rows(NamedTuple):
-    """What was recorded: record arrays of `CHAIN_ROW` (rows), `VEHICLE_ROW`, `LINK_ROW` (rows, n) and `TURN`."""
+    """What was recorded: record arrays of `CHAIN_ROW` (rows), `VEHICLE_ROW`, `LINK_ROW` (rows, n), `TURN` and `MARK`."""
 
     chain: NDArray[np.void]
     vehicles: NDArray[np.void]
     links: NDArray[np.void]
     turns: NDArray[np.void]
+    marks: NDArray[np.void]
 
 
 class Session:
@@ -150,8 +156,10 @@ class Session:
         self.state = copied(state)
 
     def _collect(self) -> None:
-        buffers, (rows, turns) = self._buffers, self._buffers.used
-        taken = buffers.chain[:rows], buffers.vehicles[:rows], buffers.links[:rows], buffers.turns[:turns]
+        buffers, (rows, turns, marks) = self._buffers, self._buffers.used
+        taken = (
+            buffers.chain[:rows], buffers.vehicles[:rows], buffers.links[:rows], buffers.turns[:turns], buffers.marks[:marks]
+        )  # fmt: skip
         self._kept.append(Rows(*(part.copy() for part in taken)))
         self._taken(self._kept[-1])
         buffers.used[:] = 0
@@ -170,5 +178,5 @@ def _new_buffers(vehicles: int) -> ChainBuffers:
     rows = max(ROWS * 8 // (vehicles + 7), 64)
     return ChainBuffers(
         np.zeros(rows, CHAIN_ROW), np.zeros((rows, vehicles), VEHICLE_ROW), np.zeros((rows, links), LINK_ROW),
-        np.zeros(max(TURNS, 2 * links), TURN), np.zeros(2, np.int64),
+        np.zeros(max(TURNS, 2 * links), TURN), np.zeros(MARKS, MARK), np.zeros(3, np.int64),
     )  # fmt: skip

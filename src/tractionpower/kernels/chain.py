@@ -8,7 +8,7 @@ from tractionpower.kernels.air_brake import move_brakes
 from tractionpower.kernels.chain_state import BUFFER_FULL, DONE, ENDED, NOT_FINITE
 from tractionpower.kernels.chain_step import leap, runge
 from tractionpower.kernels.chain_tables import SYMPLECTIC, VARIABLE
-from tractionpower.kernels.chain_tally import record, tally
+from tractionpower.kernels.chain_tally import note_mark, note_speeds, record, tally
 from tractionpower.kernels.jit import njit
 
 TINY_S = 1e-9
@@ -40,7 +40,8 @@ def advance_chain(chain, state, buffers, work, until_s):
     """
     setup, ledger = chain.chain[0], state.ledger[0]
     while True:
-        _take_controls(state)
+        if not (_take_controls(state, buffers) and _has_room(state, buffers)):
+            return BUFFER_FULL
         control = state.controls[ledger.control_row]
         over = ledger.ended or _is_over(chain, state)
         if ledger.time_s >= ledger.next_record_s - TINY_S or (over and not ledger.ended):
@@ -54,11 +55,9 @@ def advance_chain(chain, state, buffers, work, until_s):
             return ENDED
         if ledger.time_s >= until_s - TINY_S:
             return DONE
-        if buffers.used[1] + state.links.shape[0] > buffers.turns.shape[0]:
-            return BUFFER_FULL
         end_s = _next_time(setup, state)
         h = end_s - ledger.time_s
-        speed = state.movers[0].v_mps
+        note_speeds(state)
         move_brakes(chain, state, ledger.time_s, h)
         if setup.method == SYMPLECTIC:
             leap(chain, state, control, h, work)
@@ -70,15 +69,25 @@ def advance_chain(chain, state, buffers, work, until_s):
         ledger.steps += 1
         if not _is_finite(state):
             return NOT_FINITE
-        tally(chain, state, buffers, control, h, speed)
+        tally(chain, state, buffers, control, h)
 
 
 @njit
-def _take_controls(state):
-    """Let the last row of the controls whose time has come hold."""
+def _take_controls(state, buffers):
+    """Let the last row of the controls whose time has come hold, each noted by a mark; return whether there was room for it."""
     ledger = state.ledger[0]
     while ledger.control_row + 1 < ledger.control_rows and state.controls[ledger.control_row + 1].at_s <= ledger.time_s + TINY_S:
+        if buffers.used[2] == buffers.marks.shape[0]:
+            return False
         ledger.control_row += 1
+        note_mark(state, buffers, ledger.control_row)
+    return True
+
+
+@njit
+def _has_room(state, buffers):
+    """Tell whether there is room for what a step may note: a turn of each coupling, and a standstill."""
+    return buffers.used[1] + state.links.shape[0] <= buffers.turns.shape[0] and buffers.used[2] < buffers.marks.shape[0]
 
 
 @njit

@@ -28,6 +28,13 @@ MOVER = np.dtype(
         ("slope_row", "i8"),
         ("curve_row", "i8"),
         ("start_m", "f8"),
+        ("before_mps", "f8"),  # speed at the beginning of the step
+        ("greatest_mps", "f8"),  # speed of the greatest magnitude of all steps, and when
+        ("greatest_at_s", "f8"),
+        ("sharpest_mps2", "f8"),  # mean acceleration of the greatest magnitude of all steps, and when
+        ("sharpest_at_s", "f8"),
+        ("furthest_m", "f8"),  # movement against the first vehicle since the start of the greatest magnitude, and when
+        ("furthest_at_s", "f8"),
     ]
 )
 """State of a vehicle."""
@@ -71,6 +78,7 @@ LEDGER = np.dtype(
         ("splits", "i8"),  # steps cut where a vehicle came to a stand
         ("rejected", "i8"),
         ("ended", "?"),
+        ("standing", "?"),
     ],
     align=True,
 )
@@ -187,6 +195,9 @@ CHAIN_ROW = np.dtype(
 TURN = np.dtype([("link", "i8"), ("force_n", "f8")])
 """A turning point of the force of a coupling."""
 
+MARK = np.dtype([("time_s", "f8"), ("s_m", "f8"), ("v_mps", "f8"), ("control", "i8")])
+"""Time, and place and speed of the first vehicle, when a row of the controls came to hold, or (-1) the train to a stand."""
+
 TURN_N = 1000.0
 """A force has turned when it has come back by this [N]."""
 
@@ -204,12 +215,15 @@ class ChainBuffers(NamedTuple):
         Record arrays of `CHAIN_ROW` (rows), `VEHICLE_ROW` (rows, vehicles), `LINK_ROW` (rows, vehicles - 1).
     turns
         Record array of `TURN`.
+    marks
+        Record array of `MARK`.
     used
-        Rows and turns used, shape (2,); reset by the caller.
+        Rows, turns and marks used, shape (3,); reset by the caller.
     """
 
     chain: NDArray[np.void]
     vehicles: NDArray[np.void]
     links: NDArray[np.void]
     turns: NDArray[np.void]
+    marks: NDArray[np.void]
     used: NDArray[np.int64]

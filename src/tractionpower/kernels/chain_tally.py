@@ -20,13 +20,14 @@ def _bin_of(bins, value):
 
 
 @njit
-def tally(chain, state, buffers, control, h, speed_before):
-    """Count a step of `h` [s] at whose beginning the first vehicle had the speed `speed_before` [m/s]."""
+def tally(chain, state, buffers, control, h):
+    """Count a step of `h` [s]; speeds at its beginning are those of `note_speeds`."""
     ledger, first = state.ledger[0], state.movers[0]
+    _follow_vehicles(state, buffers, h)
     speed = _bin_of(chain.bins[SPEED_BINS], first.v_mps)
-    state.drive_speed[min(control.drive, state.drive_speed.shape[0] - 1), speed] += h
-    state.brake_speed[min(control.brake, state.brake_speed.shape[0] - 1), speed] += h
-    state.acceleration[_bin_of(chain.bins[ACCELERATION_BINS], (first.v_mps - speed_before) / h)] += h
+    state.drive_speed[min(max(control.drive, 0), state.drive_speed.shape[0] - 1), speed] += h
+    state.brake_speed[min(max(control.brake, 0), state.brake_speed.shape[0] - 1), speed] += h
+    state.acceleration[_bin_of(chain.bins[ACCELERATION_BINS], (first.v_mps - first.before_mps) / h)] += h
     links = state.links
     if links.shape[0] > 0:
         state.force[_bin_of(chain.bins[FORCE_BINS], links[0].force_n)] += h
@@ -38,6 +39,44 @@ def tally(chain, state, buffers, control, h, speed_before):
         if force < link.least_n:
             link.least_n, link.least_at_s = force, ledger.time_s
         _count_turn(link, j, force, buffers)
+
+
+@njit
+def note_speeds(state):
+    """Note the speeds of all vehicles at the beginning of a step."""
+    for i in range(state.movers.shape[0]):
+        state.movers[i].before_mps = state.movers[i].v_mps
+
+
+@njit
+def _follow_vehicles(state, buffers, h):
+    """Keep the extremes of all vehicles, and note where the train has come to a stand."""
+    ledger, first = state.ledger[0], state.movers[0]
+    moved = first.s_m - first.start_m
+    standing = True
+    for i in range(state.movers.shape[0]):
+        mover = state.movers[i]
+        standing &= mover.v_mps == 0.0
+        if abs(mover.v_mps) > abs(mover.greatest_mps):
+            mover.greatest_mps, mover.greatest_at_s = mover.v_mps, ledger.time_s
+        gained = (mover.v_mps - mover.before_mps) / h
+        if abs(gained) > abs(mover.sharpest_mps2):
+            mover.sharpest_mps2, mover.sharpest_at_s = gained, ledger.time_s
+        further = mover.s_m - mover.start_m - moved
+        if abs(further) > abs(mover.furthest_m):
+            mover.furthest_m, mover.furthest_at_s = further, ledger.time_s
+    if standing and not ledger.standing:
+        note_mark(state, buffers, -1)
+    ledger.standing = standing
+
+
+@njit
+def note_mark(state, buffers, control):
+    """Note that a row of the controls holds from now on, or (-1) that the train has come to a stand."""
+    mark = buffers.marks[buffers.used[2]]
+    buffers.used[2] += 1
+    mark.time_s, mark.control = state.ledger[0].time_s, control
+    mark.s_m, mark.v_mps = state.movers[0].s_m, state.movers[0].v_mps
 
 
 @njit
