@@ -110,12 +110,20 @@ def test_radii_at_which_the_curve_resistance_has_no_value(radius_m, law, codes):
 
 
 def test_transitions():
-    rows = [{"radius_m": 300.0, "half_length_m": 30.0}, {"radius_m": 300.0, "half_length_m": 20.0}]
+    rows = [{"radius_m": 300.0, "half_length_m": 30.0}, {"radius_m": 300.0, "half_length_m": 30.0}]
     curves = [{"from_m": 0.0, "to_m": 50.0, "radius_m": 300.0}, {"from_m": 500.0, "to_m": 560.0, "radius_m": 300.0}]
     assert told(on_track(transitions=rows, curves=curves)) == [
         ("error", "duplicate_row", "case.track.transitions[1].radius_m"),
         ("warning", "long_transition", "case.track.curves[0]"),
     ]
+
+
+def test_transitions_are_those_of_the_radius_of_each_curve():
+    rows = [{"radius_m": 300.0, "half_length_m": 150.0}, {"radius_m": 4000.0, "half_length_m": 0.0}]
+    wide = {"from_m": 100.0, "to_m": 300.0, "radius_m": 5000.0}
+    assert told(on_track(transitions=rows, curves=[wide])) == []
+    near = [{"from_m": 500.0, "to_m": 900.0, "radius_m": 300.0}, {"from_m": 1199.0, "to_m": 1600.0, "radius_m": 300.0}]
+    assert told(on_track(transitions=rows, curves=near)) == [("warning", "long_transition", "case.track.curves[1]")]
 
 
 @pytest.mark.parametrize(("length_m", "is_told"), [(79.0, True), (80.0, False)])

@@ -80,10 +80,6 @@ def test_power_in_emergency_is_told_once():
     assert check_controls(scenario(*commands[:1], {"time_s": 4.0, "drive": 0, "brake": "emergency"})) == []
 
 
-def test_an_unchanged_start():
-    assert told(scenario(start={"brake": "unchanged"}))["case.start.brake"].severity == "error"
-
-
 def test_commands_that_nothing_obeys():
     wagons = scenario(
         {"time_s": 0.0, "drive": 0, "brake": "release"},

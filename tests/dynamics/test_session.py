@@ -1,9 +1,12 @@
+import re
+
 import numpy as np
 import pytest
 from chains import AT_ONCE, LOCOMOTIVE, WAGON, WEDGE, free, make_chain, pulled, spring
 
 from tractionpower.dynamics.driven import DrivenSession
 from tractionpower.dynamics.session import NotComputableError, Session
+from tractionpower.errors import UsageError
 
 BRAKE = {"brake_ratio": 0.6}
 
@@ -72,6 +75,26 @@ def test_two_controls_set_at_the_same_time_both_hold():
     driven.advance(2.0)
     now = driven.snapshot()
     assert (now["drive"], now["brake"], now["electric_percent"]) == (0, 5, 50.0)
+
+
+@pytest.mark.parametrize(
+    ("setting", "told"),
+    [
+        ({"brake": "emergancy"}, "brake: there is no 'emergancy'; it takes 0 to 15, charge"),
+        ({"brake": "unchanged"}, "brake: there is no 'unchanged'"),
+        ({"brake": 16}, "brake: 16 is not from 0 to 15"),
+        ({"drive": -3, "electric": 9.0}, "drive: -3 is not from 0 to 1; electric: 9 is not from 0 to 8"),
+        ({"independent_bar": float("nan")}, "independent_bar: nan is not from 0 to 15"),
+    ],
+)
+def test_a_control_that_the_case_does_not_have_is_refused(setting, told):
+    driven = DrivenSession(started())
+    driven.set(brake="emergency")
+    driven.advance(2.0)
+    with pytest.raises(UsageError, match=re.escape(told)):
+        driven.set(**setting)
+    driven.advance(4.0)
+    assert driven.snapshot()["brake"] == 16 and driven.snapshot()["pipe_bar"] < 0.1
 
 
 def test_many_settings_find_room():

@@ -10,6 +10,7 @@ from tractionpower.dynamics.control_checks import check_controls
 from tractionpower.dynamics.coupling_checks import check_coupling
 from tractionpower.dynamics.engines import powered
 from tractionpower.dynamics.step_checks import check_step
+from tractionpower.dynamics.way import half_length
 from tractionpower.errors import Problem
 from tractionpower.model.dynamics.case import Case, CaseCurve, CaseGradient, CaseTunnel, DynamicsScenario
 
@@ -128,11 +129,16 @@ def _check_transitions(case: Case) -> Iterator[Problem]:
             found = f"the radius {row.radius_m:g} m twice"
             yield Problem("duplicate_row", f"case.track.transitions[{k}].radius_m", found, "each radius once", "delete one")
         seen.add(row.radius_m)
-    longest = max((row.half_length_m for row in track.transitions), default=0.0)
-    for k, curve in enumerate(track.curves):
-        if curve.to_m > curve.from_m and 2.0 * longest > curve.to_m - curve.from_m:
-            found = f"a curve of {curve.to_m - curve.from_m:g} m with transitions of up to {2.0 * longest:g} m"
+    along = sorted((curve.from_m, curve.to_m, half_length(track, curve.radius_m), k) for k, curve in enumerate(track.curves))
+    for from_m, to_m, half_m, k in along:
+        if to_m > from_m and 2.0 * half_m > to_m - from_m:
+            found = f"a curve of {to_m - from_m:g} m with transitions of {2.0 * half_m:g} m"
             remedy = "its full curvature may not be reached: check the transitions"
+            yield Problem("long_transition", f"case.track.curves[{k}]", found, "", remedy, "warning")
+    for (_, end_m, half_m, _), (from_m, _, next_half_m, k) in pairwise(along):
+        if end_m < from_m < end_m + half_m + next_half_m:
+            found = f"a transition that begins {end_m + half_m + next_half_m - from_m:g} m before that of the last curve ends"
+            remedy = "the curvatures add up there: check the transitions"
             yield Problem("long_transition", f"case.track.curves[{k}]", found, "", remedy, "warning")
 
 

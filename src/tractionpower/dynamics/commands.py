@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tractionpower.kernels.chain_tables import CONTROL, PIPE
 from tractionpower.model.dynamics.case import Case
-from tractionpower.model.dynamics.gear import AirBrake, ElectricBrake
+from tractionpower.model.dynamics.gear import AirBrake, ElectricBrake, Traction
 
 BAR = 1e5
 """Pascal per bar."""
@@ -58,7 +58,11 @@ def brake_target(air_brake: AirBrake, brake: int | str) -> tuple[float, bool]:
         return reduction_of_level(air_brake, brake), False
     if brake == "emergency":
         return air_brake.pipe_pressure_bar, True
-    return (air_brake.full_service_reduction_bar if brake == "full_service" else 0.0), False
+    if brake == "full_service":
+        return air_brake.full_service_reduction_bar, False
+    if brake in ("charge", "release"):
+        return 0.0, False
+    raise ValueError(f"no reduction belongs to the word {brake!r}")
 
 
 def shown_level(air_brake: AirBrake, target_bar: float, *, emergency: bool = False) -> int:
@@ -111,6 +115,12 @@ def reduction_of_row(row: PipeRow, time_s: float) -> float:
     since = max(time_s - row.from_s, 0.0)
     left = math.exp(-since / row.time_constant_s) if row.time_constant_s > 0.0 else 0.0
     return float(row.target_pa + (row.start_pa - row.target_pa) * left)
+
+
+def drive_levels(case: Case) -> int:
+    """Return the highest level of the drive control of any powered vehicle."""
+    own = [part.traction for part in case.vehicles if part.traction is not None]
+    return max((traction.levels for traction in [*own, case.traction or Traction()]), default=0)
 
 
 def electric_levels(case: Case) -> int:

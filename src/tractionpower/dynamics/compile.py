@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.dynamics.brakes import compile_brakes, settled_cylinder_pa
-from tractionpower.dynamics.commands import compile_commands
+from tractionpower.dynamics.commands import compile_commands, drive_levels
 from tractionpower.dynamics.couplings import compile_couplings
 from tractionpower.dynamics.engines import compile_engines
 from tractionpower.dynamics.masses import inertias, masses
@@ -73,7 +73,7 @@ class CompiledChain:
         ledger["control_rows"], ledger["pipe_rows"] = len(self.controls), len(self.pipe)
         ledger["step_s"] = self.chain.chain[0]["step_s"]
         speeds, forces, accelerations = (int(row["bins"]) + 2 for row in self.chain.bins)
-        levels, brakes = _drive_levels(self.scenario), self.scenario.case.air_brake.levels + 2
+        levels, brakes = drive_levels(self.scenario.case) + 1, self.scenario.case.air_brake.levels + 2
         return ChainState(
             movers, links, ledger, self.pipe.copy(), self.controls.copy(), np.zeros((levels, speeds)), np.zeros((brakes, speeds)),
             np.zeros(forces), np.zeros(accelerations),
@@ -143,9 +143,3 @@ def _vehicles(scenario: DynamicsScenario, weight: Floats, behind: Floats) -> Arr
         row["c_ns2_per_m2"] = (resistance.c_n_per_kmh2 + resistance.specific_c_n_per_kn_per_kmh2 * kn) * KMH**2
         row["adhesion_a"], row["adhesion_b"], row["adhesion_c"] = adhesion.a_kmh / KMH, adhesion.b_kmh / KMH, adhesion.c
     return rows
-
-
-def _drive_levels(scenario: DynamicsScenario) -> int:
-    """Return how many levels of the drive control are counted, level 0 included."""
-    given = [part.traction.levels for part in scenario.parts if part.traction is not None]
-    return max(given, default=15) + 1

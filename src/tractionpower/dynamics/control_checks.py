@@ -21,9 +21,6 @@ _AIR = "case.air_brake"
 def check_controls(scenario: DynamicsScenario) -> list[Problem]:
     """Return everything that is wrong or doubtful with traction, brakes and commands of a case."""
     problems = [*check_gear(scenario), *_check_air_brake(scenario.case.air_brake)]
-    if scenario.case.start.brake == "unchanged":
-        remedy = "say charge, full_service or emergency"
-        problems.append(Problem("start_brake", "case.start.brake", "unchanged: there is nothing before the start", "", remedy))
     return [*problems, *_check_use(scenario), *_check_commands(scenario)]
 
 

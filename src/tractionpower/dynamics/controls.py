@@ -5,12 +5,46 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tractionpower.dynamics.commands import BAR, brake_target, electric_levels, next_pipe_row, shown_level
+from tractionpower.dynamics.commands import BAR, brake_target, drive_levels, electric_levels, next_pipe_row, shown_level
+from tractionpower.errors import UsageError
 from tractionpower.kernels.chain_state import ChainState
 from tractionpower.model.dynamics.case import Case
 
+MOST_INDEPENDENT_BAR = 15.0
+
 Setting = tuple[int | None, int | str | None, float | None, float | None]
 """Drive, brake, electric, independent_bar; None leaves one as it is."""
+
+
+SET_WORDS = ("charge", "release", "full_service", "emergency")
+"""Words of the brake control that a driver may set."""
+
+
+def check_setting(case: Case, setting: Setting) -> None:
+    """Refuse controls that the case does not have.
+
+    Raises
+    ------
+    UsageError
+        With all that is wrong.
+    """
+    drive, brake, electric, independent = setting
+    told = [
+        *_beyond("drive", drive, drive_levels(case)),
+        *_beyond("electric", electric, electric_levels(case)),
+        *_beyond("independent_bar", independent, MOST_INDEPENDENT_BAR),
+    ]
+    if isinstance(brake, str) and brake not in SET_WORDS:
+        told.append(f"brake: there is no {brake[:40]!r}; it takes 0 to {case.air_brake.levels}, {', '.join(SET_WORDS)}")
+    elif not isinstance(brake, str):
+        told += _beyond("brake", brake, case.air_brake.levels)
+    if told:
+        raise UsageError("; ".join(told))
+
+
+def _beyond(name: str, value: float | None, most: float) -> list[str]:
+    """Return in words that a control is outside its range, nothing if it is not."""
+    return [] if value is None or 0 <= value <= most else [f"{name}: {value:g} is not from 0 to {most:g}"]
 
 
 def append_control(case: Case, state: ChainState, setting: Setting) -> ChainState:
@@ -23,7 +57,7 @@ def append_control(case: Case, state: ChainState, setting: Setting) -> ChainStat
     state
         State of its chain. Rows of the future, if it has any, are dropped: the driver has taken over.
     setting
-        What is set.
+        What is set; checked.
     """
     drive, brake, electric, independent = setting
     ledger = state.ledger[0]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.dynamics.compile import CompiledChain, compile_chain
-from tractionpower.dynamics.controls import append_control
+from tractionpower.dynamics.controls import append_control, check_setting
 from tractionpower.errors import TractionPowerError
 from tractionpower.kernels.chain import advance_chain
 from tractionpower.kernels.chain_state import (
@@ -132,8 +132,15 @@ class Session:
             Level of the electric brake.
         independent_bar
             Cylinder pressure of the independent brake [bar].
+
+        Raises
+        ------
+        UsageError
+            If the case has no such level or word; nothing is set then.
         """
-        self.state = append_control(self.compiled.scenario.case, self.state, (drive, brake, electric, independent_bar))
+        case, setting = self.compiled.scenario.case, (drive, brake, electric, independent_bar)
+        check_setting(case, setting)
+        self.state = append_control(case, self.state, setting)
 
     def snapshot(self) -> dict[str, Any]:
         """Return what is the case now, in units of the boundary: time, controls, motion of the first vehicle, forces."""

@@ -132,7 +132,9 @@ class CaseStart(Declaration):
     couplings: Literal["centred", "stretched", "bunched"] = Field(
         default="centred", description="Where in their slack the couplings are: in its middle, or at either end."
     )
-    brake: BrakeWord = Field(default="charge", description="State of the air brake, settled.")
+    brake: Literal["charge", "release", "full_service", "emergency"] = Field(
+        default="charge", description="State of the air brake, settled."
+    )
 
 
 class CaseRun(Declaration):
