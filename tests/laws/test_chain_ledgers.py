@@ -70,6 +70,38 @@ def test_what_springs_hold_and_dampers_burn_is_what_couplings_take():
     assert np.abs(stretch).max() > 1e-3
 
 
+def gap_of_states(method, step_s, tolerance=1e-9, spring_kn_per_mm=10.0):
+    """Return by how much work and energy of a train on a rounded slope differ, of the work; from places and speeds alone.
+
+    The pull is constant, so its work is force times way; springs and heights have closed forms; nothing rubs.
+    """
+    run = {"method": method, "step_s": step_s, "tolerance": tolerance, "record_every_s": 100.0, "duration_s": 100.0}
+    rising = {"gradients": [{"from_m": 50.0, "to_m": 5000.0, "permille": 8.0}], "rounding_radius_m": 20_000.0}
+    chained = Chained(pulled(9, spring(spring_kn_per_mm), track=rising, run=run))
+    start = chained.movers["s_m"].copy()
+    chained.advance(23.7)
+    movers = chained.movers
+    stretch = (movers["s_m"][:-1] - movers["s_m"][1:]) - np.diff(chained.chain.vehicles["behind_m"])
+    held = 0.5 * spring_kn_per_mm * 1e6 * stretch**2
+    along = np.clip(np.stack((start, movers["s_m"])) - (50.0 - 80.0), 0.0, None)  # the rounding is 160 m long, half before
+    low, high = np.where(along < 160.0, 0.5 * 0.008 / 160.0 * along**2, 0.008 * (along - 80.0))
+    work = 200e3 * (movers["s_m"][0] - start[0])
+    return (work - chained.kinetic_j() - held.sum() - (chained.chain.vehicles["weight_n"] * (high - low)).sum()) / work
+
+
+@pytest.mark.parametrize(("method", "steps", "order"), [("symplectic", (0.02, 0.01), 2), ("rk4", (0.04, 0.02), 4)])
+def test_energy_by_states_closes_by_the_order_of_the_method(method, steps, order):
+    coarse, fine = (abs(gap_of_states(method, step_s)) for step_s in steps)
+    assert fine < 1e-5
+    assert np.log2(coarse / fine) > order - 0.4
+
+
+def test_energy_by_states_closes_to_a_millionth():
+    assert abs(gap_of_states("symplectic", 0.002)) < 1e-6
+    assert abs(gap_of_states("rk4", 0.01)) < 1e-6
+    assert abs(gap_of_states("variable", 0.1, tolerance=1e-9)) < 1e-6
+
+
 def test_friction_gears_never_give_back_more_than_they_took():
     chained = advanced(over_the_hill(WEDGE, method="rk4", step_s=0.002), 110.0)
     assert (chained.links["absorbed_j"] > 0.0).all()
