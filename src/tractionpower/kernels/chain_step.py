@@ -29,8 +29,18 @@ _LEAST_STEP_S = 1e-9
 _SPEED_SCALE_MPS, _PLACE_SCALE_M = 1.0, 0.1
 """What the relative tolerance of a variable step is relative to: at least this speed, and this place."""
 
+# Butcher tableaux by method; the row of SYMPLECTIC is not used
+_A, _B, _C, _E = np.zeros((4, 7, 6)), np.zeros((4, 7)), np.zeros((4, 7)), np.zeros((4, 7))
+_COUNT = np.array([0, 4, 1, 7])
+
+_A[RK4, 1, 0], _A[RK4, 2, 1], _A[RK4, 3, 2] = 0.5, 0.5, 1.0
+_B[RK4, :4] = 1 / 6, 1 / 3, 1 / 3, 1 / 6
+_C[RK4, :4] = 0.0, 0.5, 0.5, 1.0
+
+_B[EULER, 0] = 1.0
+
 # Dormand and Prince, J. Comp. Appl. Math. 6 (1980), 19: RK5(4)7M
-_DP_A = np.array([
+_A[VARIABLE] = [
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     [1 / 5, 0.0, 0.0, 0.0, 0.0, 0.0],
     [3 / 40, 9 / 40, 0.0, 0.0, 0.0, 0.0],
@@ -38,20 +48,10 @@ _DP_A = np.array([
     [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0.0, 0.0],
     [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0.0],
     [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
-])  # fmt: skip
-_DP_B = np.array([35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84, 0.0])
-_DP_C = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
-_DP_E = _DP_B - np.array([5179 / 57600, 0.0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40])
-
-_RK_A = np.zeros((7, 6))
-_RK_A[1, 0], _RK_A[2, 1], _RK_A[3, 2] = 0.5, 0.5, 1.0
-_RK_B = np.array([1 / 6, 1 / 3, 1 / 3, 1 / 6, 0.0, 0.0, 0.0])
-_RK_C = np.array([0.0, 0.5, 0.5, 1.0, 0.0, 0.0, 0.0])
-
-_EULER_A = np.zeros((7, 6))
-_EULER_B = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-_EULER_C = np.zeros(7)
-_NO_E = np.zeros(7)
+]
+_B[VARIABLE] = 35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84, 0.0
+_C[VARIABLE] = 0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0
+_E[VARIABLE] = _B[VARIABLE] - np.array([5179 / 57600, 0.0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40])
 
 
 @njit
@@ -196,17 +196,7 @@ def _attempt(chain, state, control, times, work):
         Part of the step after which the first vehicle would pass through zero; 1 where none does.
     """
     method = chain.chain[0].method
-    if method == RK4:
-        return _stages(chain, state, control, times, (_RK_A, _RK_B, _RK_C, _NO_E, 4), work)
-    if method == EULER:
-        return _stages(chain, state, control, times, (_EULER_A, _EULER_B, _EULER_C, _NO_E, 1), work)
-    return _stages(chain, state, control, times, (_DP_A, _DP_B, _DP_C, _DP_E, 7), work)
-
-
-@njit
-def _stages(chain, state, control, times, tableau, work):
-    """Evaluate the stages of a Butcher tableau and combine them; see `_attempt`."""
-    a, b, c, e, stages = tableau
+    a, b, c, e, stages = _A[method], _B[method], _C[method], _E[method], _COUNT[method]
     offset, h, whole = times
     movers = state.movers
     n = movers.shape[0]
@@ -273,7 +263,7 @@ def _accept(chain, state, control, h, theta, work):
     movers, ledger = state.movers, state.ledger[0]
     n = movers.shape[0]
     method = chain.chain[0].method
-    b = _RK_B if method == RK4 else (_EULER_B if method == EULER else _DP_B)
+    b = _B[method]
     for i in range(n):
         mover = movers[i]
         before = mover.v_mps
