@@ -47,8 +47,8 @@ def test_the_greatest_force_of_a_kind_is_a_formula_and_is_judged(book, formulas,
         most = extremes[f"greatest_{side}_kn"]
         assert kind[f"greatest {side} [kN]"] == pytest.approx(most.max())
         assert kind[f"endurable {side} [kN]"] == limit
-    assert kind["at coupling"] == extremes["coupling"][extremes["greatest_tension_kn"].argmax()]
-    assert kind["used of it [%]"] == pytest.approx(100.0 * extremes["greatest_tension_kn"].max() / 850.0)
+    assert kind["tension at coupling"] == extremes["coupling"][extremes["greatest_tension_kn"].argmax()]
+    assert kind["used of endurable tension [%]"] == pytest.approx(100.0 * extremes["greatest_tension_kn"].max() / 850.0)
     (row,) = [row for row in read_table(formulas["Coupling forces"], 2)]
     assert row["greatest tension [kN]"].startswith("=SUMPRODUCT(MAX(")
     verdicts = {row["what is judged"]: row for row in read_table(book["Acceptance"])}
@@ -68,7 +68,7 @@ def test_a_force_beyond_its_limit_is_violated(tmp_path):
     assert verdicts == {
         "greatest tension of couplings linear-5": "violated", "greatest compression of couplings linear-5": "met"
     }  # fmt: skip
-    assert max(row["used of what is endured [%]"] for row in read_table(book["Coupling forces"])) > 100.0
+    assert max(row["used of endurable tension [%]"] for row in read_table(book["Coupling forces"])) > 100.0
 
 
 def test_stops_and_energies_are_those_of_the_run(book, results):
