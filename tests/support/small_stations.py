@@ -7,9 +7,9 @@ from typing import Any
 import pandas as pd
 from point_trains import RUNNING
 
-from tractionpower.dynamics.run import Outcome
 from tractionpower.dynamics.traindyn.stations_run import run_stations
 from tractionpower.model.dynamics.stations import StationsCase
+from tractionpower.results.outcome import Outcome
 from tractionpower.results.store import MemoryWriter
 
 TRAIN: dict[str, Any] = {

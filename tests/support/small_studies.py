@@ -2,9 +2,10 @@
 
 from typing import Any
 
-from tractionpower.cosimulation.run import Outcome, Run
+from tractionpower.cosimulation.run import Run
 from tractionpower.io.limits_files import shipped_limits
 from tractionpower.model.scenario import Scenario
+from tractionpower.results.outcome import Outcome
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter
 

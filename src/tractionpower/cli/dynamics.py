@@ -18,8 +18,9 @@ from tractionpower.cli.progress import steps_bar
 from tractionpower.cli.study_call import exit_code
 
 if TYPE_CHECKING:
-    from tractionpower.dynamics.run import CaseRun, Outcome
+    from tractionpower.dynamics.run import CaseRun
     from tractionpower.dynamics.traindyn.stations_run import StationsRun
+    from tractionpower.results.outcome import Outcome
     from tractionpower.results.store import RunWriter
 
 app = typer.Typer(name="dynamics", help="The train as many vehicles: couplings, air brake, a driver.", no_args_is_help=True)

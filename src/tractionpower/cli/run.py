@@ -13,7 +13,8 @@ from tractionpower.cli.progress import steps_bar
 from tractionpower.cli.study_call import call_study, exit_code, keeping
 
 if TYPE_CHECKING:
-    from tractionpower.cosimulation.run import Outcome, Run
+    from tractionpower.cosimulation.run import Run
+    from tractionpower.results.outcome import Outcome
     from tractionpower.results.store import RunWriter
 
 

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tractionpower.cosimulation.run import Outcome, Run
+    from tractionpower.cosimulation.run import Run
+    from tractionpower.results.outcome import Outcome
 
 COLUMNS = {
     "highest_current_a": "highest\ncurrent [A]",

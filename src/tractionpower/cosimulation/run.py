@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
-
-import pyarrow as pa
+from typing import Any
 
 from tractionpower.cosimulation.check import check_scenario, step_count
 from tractionpower.cosimulation.recorder import Recorder, Watch
 from tractionpower.cosimulation.start import start_state
 from tractionpower.cosimulation.switching import Switchboard
 from tractionpower.cosimulation.tables import compile_scenario, coupling_voltage
-from tractionpower.errors import Problem, raise_errors
+from tractionpower.errors import raise_errors
 from tractionpower.kernels.block import advance
 from tractionpower.kernels.block_tables import TRIGGERED, Buffers, State, new_buffers
 from tractionpower.kernels.train_tables import TRAIN_ROW
 from tractionpower.model.scenario import Scenario
+from tractionpower.results.outcome import Outcome, Progress, Writer
 from tractionpower.results.store import RunWriter
 from tractionpower.results.versions import versions
 
@@ -29,40 +27,6 @@ BLOCK_S = 0.25
 
 FIRST_BLOCK = 16
 BUFFER_BYTES = 16_000_000
-
-Progress = Callable[[int, int], None]
-"""Called with the steps done and the steps in all."""
-
-
-class Writer(Protocol):
-    """Takes the rows of the tables."""
-
-    def append(self, table: str, rows: pa.Table) -> None:
-        """Take `rows` of `table`."""
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """How a run ended.
-
-    Attributes
-    ----------
-    run
-        What ``run.json`` says, without the files.
-    key_figures
-        What ``key_figures.json`` holds.
-    warnings
-        Warnings of the checks.
-    """
-
-    run: dict[str, Any]
-    key_figures: list[dict[str, Any]]
-    warnings: tuple[Problem, ...]
-
-    @property
-    def flagged(self) -> bool:
-        """Whether a step did not converge or could not be served, or a ledger does not close."""
-        return bool(self.run["status"] != "complete")
 
 
 class Run:

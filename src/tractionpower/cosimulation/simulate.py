@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
+from tractionpower.cosimulation.run import Run
 from tractionpower.model.scenario import Scenario
+from tractionpower.results.outcome import Outcome, Progress, Writer
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter, RunWriter
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
-import pyarrow as pa
 from numpy.typing import NDArray
 
 from tractionpower.dynamics.statistics import RainflowCounter, relative_damage
@@ -32,18 +31,12 @@ from tractionpower.results.dynamics_tables import (
     vehicles_table,
 )
 from tractionpower.results.key_figures import KeyFigure
+from tractionpower.results.outcome import Writer
 from tractionpower.results.stops import Stop, braking_spells
 
 Array = NDArray[Any]
 
 STEPS_DEFINITION = "steps of the method; where a vehicle comes to a stand a step is cut, which counts as two"
-
-
-class Writer(Protocol):
-    """Takes the rows of the tables."""
-
-    def append(self, table: str, rows: pa.Table) -> None:
-        """Take `rows` of `table`."""
 
 
 class ChainRecorder:

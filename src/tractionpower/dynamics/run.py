@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from tractionpower.dynamics.checks import check_case
-from tractionpower.dynamics.recorder import ChainRecorder, Writer
+from tractionpower.dynamics.recorder import ChainRecorder
 from tractionpower.dynamics.session import NotComputableError, Session
-from tractionpower.errors import Problem, raise_errors
+from tractionpower.errors import raise_errors
 from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.results.kept import input_hash_of
+from tractionpower.results.outcome import Outcome, Progress, Writer
 from tractionpower.results.store import RunWriter
 from tractionpower.results.versions import versions
 
@@ -23,33 +22,6 @@ BLOCK_S = 0.25
 
 KIND = "dynamics"
 """What ``run.json`` calls such results."""
-
-Progress = Callable[[int, int], None]
-"""Called with the steps done and the steps in all."""
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """How a run ended.
-
-    Attributes
-    ----------
-    run
-        What ``run.json`` says, without the files.
-    key_figures
-        What ``key_figures.json`` holds.
-    warnings
-        Warnings of the checks.
-    """
-
-    run: dict[str, Any]
-    key_figures: list[dict[str, Any]]
-    warnings: tuple[Problem, ...]
-
-    @property
-    def flagged(self) -> bool:
-        """Whether it was not computed to its end, or its ledger does not close."""
-        return bool(self.run["status"] != "complete")
 
 
 class CaseRun:

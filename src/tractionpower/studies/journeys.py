@@ -18,7 +18,6 @@ import numpy as np
 from tractionpower.alignment.routes import stop_distance
 from tractionpower.cosimulation.calls import call_rows, time_at_stops
 from tractionpower.cosimulation.check import check_scenario
-from tractionpower.cosimulation.run import Writer
 from tractionpower.errors import Problem, UsageError, raise_errors
 from tractionpower.io.wording import did_you_mean, shown
 from tractionpower.kernels.train_tables import HOLDING, LIMITED_BY
@@ -29,6 +28,7 @@ from tractionpower.model.scenario import Scenario
 from tractionpower.movement.journey import Journey, theoretical_journeys
 from tractionpower.movement.ledgers import told_kwh
 from tractionpower.results.key_figures import KeyFigure
+from tractionpower.results.outcome import Writer
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter
 from tractionpower.results.trains import CallRow, calls_table, sum_up, train_figures, trains_table

@@ -12,9 +12,10 @@ from typing import Any, cast
 import numpy as np
 
 from tractionpower.dynamics.driven import DrivenSession
-from tractionpower.dynamics.run import CaseRun, Outcome
+from tractionpower.dynamics.run import CaseRun
 from tractionpower.dynamics.session import Rows
 from tractionpower.model.dynamics.case import Command, DynamicsScenario
+from tractionpower.results.outcome import Outcome
 from tractionpower.results.store import RunWriter
 from tractionpower.web.recording import Driven, as_driven, write_case
 

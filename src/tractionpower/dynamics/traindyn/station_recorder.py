@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
-import pyarrow as pa
 
 from tractionpower.dynamics.traindyn.core import TrainDynamics
 from tractionpower.dynamics.traindyn.layout import lay_out
@@ -15,6 +14,7 @@ from tractionpower.dynamics.traindyn.train import DynTrain
 from tractionpower.kernels.point_mass import STATES
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.results.key_figures import KeyFigure
+from tractionpower.results.outcome import Writer
 from tractionpower.results.tables import make_table
 
 EVENTS = ("entered", "track_given", "arrival", "departure", "passing", "left", "still_there")
@@ -33,13 +33,6 @@ NUMBERS: Values = {
     "braking_force_kn": lambda train: train.braking_force_kn,
 }
 """Columns of a train that are numbers."""
-
-
-class Writer(Protocol):
-    """Takes the rows of tables."""
-
-    def append(self, table: str, rows: pa.Table) -> None:
-        """Take rows of a table."""
 
 
 class StationRecorder:

@@ -6,13 +6,13 @@ import math
 import time
 from pathlib import Path
 
-from tractionpower.dynamics.run import Outcome, Progress
 from tractionpower.dynamics.traindyn.station_checks import check_stations
-from tractionpower.dynamics.traindyn.station_recorder import StationRecorder, Writer
+from tractionpower.dynamics.traindyn.station_recorder import StationRecorder
 from tractionpower.dynamics.traindyn.stations import StationsModel, import_simpy
 from tractionpower.errors import raise_errors
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.results.kept import input_hash_of
+from tractionpower.results.outcome import Outcome, Progress, Writer
 from tractionpower.results.store import RunWriter
 from tractionpower.results.versions import versions
 

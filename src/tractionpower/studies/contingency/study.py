@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from tractionpower.cosimulation.check import check_scenario
-from tractionpower.cosimulation.run import Writer
 from tractionpower.errors import Problem, raise_errors
 from tractionpower.io.library import shipped_library
 from tractionpower.model.contingency import Contingency
 from tractionpower.model.library import Library
 from tractionpower.model.scenario import Scenario
+from tractionpower.results.outcome import Writer
 from tractionpower.results.results import Results
 from tractionpower.results.store import MemoryWriter, RunWriter
 from tractionpower.results.versions import versions

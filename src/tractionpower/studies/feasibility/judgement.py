@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from tractionpower.cosimulation.run import Outcome
 from tractionpower.errors import Problem
+from tractionpower.results.outcome import Outcome
 
 NAN = float("nan")
 

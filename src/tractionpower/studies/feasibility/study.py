@@ -12,7 +12,7 @@ import pyarrow as pa
 
 from tractionpower.cosimulation.lateness import STUCK_S, lateness_of
 from tractionpower.cosimulation.quiet import run_quietly
-from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
+from tractionpower.cosimulation.run import Run
 from tractionpower.cosimulation.simulate import Prepared, computed
 from tractionpower.errors import Problem, UsageError
 from tractionpower.kernels.train_tables import OUTSIDE
@@ -20,6 +20,7 @@ from tractionpower.model.scenario import Output, Scenario
 from tractionpower.movement.compile import Movement
 from tractionpower.movement.journey import calls_of
 from tractionpower.movement.turns import Link, links_of
+from tractionpower.results.outcome import Outcome, Progress, Writer
 from tractionpower.results.results import Results
 from tractionpower.results.store import RunWriter
 from tractionpower.studies.feasibility.alone import AloneTimes, run_all_alone

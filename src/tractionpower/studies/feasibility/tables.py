@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from tractionpower.cosimulation.run import Writer
 from tractionpower.results.columns import TABLES
 from tractionpower.results.key_figures import KeyFigure
+from tractionpower.results.outcome import Writer
 from tractionpower.results.tables import make_table
 from tractionpower.studies.feasibility.judgement import (
     INFEASIBLE,

@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from tractionpower.cosimulation.run import Outcome, Progress, Run, Writer
+from tractionpower.cosimulation.run import Run
 from tractionpower.cosimulation.simulate import Prepared, computed
 from tractionpower.cosimulation.useful_voltage_recorder import UsefulVoltageRecorder
 from tractionpower.errors import Problem
 from tractionpower.model.scenario import Scenario
+from tractionpower.results.outcome import Outcome, Progress, Writer
 from tractionpower.results.results import Results
 from tractionpower.studies.ratings.findings import Findings, Row, size_notes, worst_breakers, worst_demand
 from tractionpower.studies.ratings.use import Use, ruling

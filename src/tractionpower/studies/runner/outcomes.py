@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from tractionpower.cosimulation.run import Writer
 from tractionpower.errors import InputError
 from tractionpower.model.change import split_change
 from tractionpower.results.columns import TABLES
+from tractionpower.results.outcome import Writer
 from tractionpower.results.tables import make_table, schema_of
 from tractionpower.studies.runner.case import CASE_TABLES, FAILED, Case
 from tractionpower.studies.runner.packed import table_of
