@@ -23,7 +23,7 @@ def case(tmp_path):
     return write_small_case(tmp_path / "case")
 
 
-def drive_by_page(address, *orders):
+def drive_by_page(address, *orders, moving=None):
     """Send orders as the page does, each after a little driving, until the drive is over."""
 
     async def go():
@@ -34,6 +34,8 @@ def drive_by_page(address, *orders):
             async for message in page:
                 found = json.loads(message.data)
                 frames += found["kind"] == "frame"
+                if moving is not None and found["kind"] == "frame" and found["snapshot"]["time_s"] > 0.1:
+                    moving.set()
                 if frames >= 5 and waiting:
                     frames = 0
                     await page.send_json(waiting.pop(0))
@@ -108,9 +110,11 @@ def test_ctrl_c_ends_the_drive_and_keeps_it(case, tmp_path):
             lines.append(line)
             if found := re.search(r"http://127\.0\.0\.1:\d+/\?key=\S+", line):
                 break
-        thread = threading.Thread(target=drive_by_page, args=(found[0], {"set": "drive", "level": 10}))
+        moving = threading.Event()
+        orders = ({"set": "drive", "level": 10}, {"factor": 10})
+        thread = threading.Thread(target=drive_by_page, args=(found[0], *orders), kwargs={"moving": moving})
         thread.start()
-        threading.Event().wait(1.0)
+        assert moving.wait(20)
         ran.send_signal(signal.SIGINT)
         rest = ran.stderr.read()
         thread.join(10)

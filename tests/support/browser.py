@@ -127,7 +127,7 @@ class Browser:
         until = time.monotonic() + seconds
         while not await self.value(f"Boolean({expression})"):
             assert time.monotonic() < until, f"never true: {expression}; complaints: {self.complaints}"
-            await asyncio.sleep(0.03)
+            await asyncio.sleep(0.01)
 
     async def press(self, code: str, key: str = "", hold: int = 1) -> None:
         """Press a key, by its place; `hold` is how often it repeats."""

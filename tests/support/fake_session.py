@@ -28,9 +28,12 @@ class FakeSession:
         Their number, the locomotive among them.
     step_s, end_s
         Step, and simulated time at which it has finished [s].
+    blow_kn
+        Force of all couplings in one early step, between two frames; 0: no such blow.
     """
 
-    def __init__(self, vehicles: int = 21, step_s: float = 0.01, end_s: float = 600.0) -> None:
+    def __init__(self, vehicles: int = 21, step_s: float = 0.01, end_s: float = 600.0, blow_kn: float = 0.0) -> None:
+        self.blow_kn = blow_kn
         self.vehicles, self.step_s, self.end_s = vehicles, step_s, end_s
         self.time_s, self.steps = 0.0, 0
         self.drive, self.brake = 0, 0
@@ -39,7 +42,8 @@ class FakeSession:
         self.speed_mps = self.place_m = self.acceleration_mps2 = 0.0
         self.effort_kn = self.cylinder_bar = self.energy_kwh = 0.0
         self.swing_kn = self.swung_s = 0.0
-        self.extremes = [0.0, 0.0]
+        self.extremes = np.zeros((2, vehicles - 1))
+        self.peaks = (math.inf, -math.inf)
         self.turns: list[float] = []
         self.settings: list[tuple[float, dict[str, Any]]] = []
         self._counts = {
@@ -99,13 +103,15 @@ class FakeSession:
         ]
 
     def _count(self, h: float) -> None:
-        force = self.forces_kn()[0]
+        forces = np.full(self.vehicles - 1, self.blow_kn) if self.blow_kn and self.steps == 6 else np.array(self.forces_kn())
+        force = float(forces[0])
         speed = np.searchsorted(SPEED_EDGES_KMH, 3.6 * self.speed_mps, side="right")
         self._counts["drive_speed"][self.drive, speed] += h
         self._counts["brake_speed"][self.brake, speed] += h
         self._counts["force"][np.searchsorted(FORCE_EDGES_KN, force, side="right")] += h
         self._counts["acceleration"][np.searchsorted(ACCELERATION_EDGES_MPS2, self.acceleration_mps2, side="right")] += h
-        self.extremes = [max(self.extremes[0], force), min(self.extremes[1], force)]
+        self.extremes = np.array([np.maximum(self.extremes[0], forces), np.minimum(self.extremes[1], forces)])
+        self.peaks = (min(self.peaks[0], force), max(self.peaks[1], force))
         if self.steps % 50 == 0:
             self.turns.append(force)
 
@@ -123,10 +129,12 @@ class FakeSession:
             "brake_force_kn": 0.07 * self.cylinder_bar * (80.0 + 60.0 * (self.vehicles - 1)),
             "resistance_kn": 0.0157 * (80.0 + 60.0 * (self.vehicles - 1)),
             "independent_bar": self.independent_bar,
-            "electric_percent": 100.0 * self.electric / 8.0,
+            "electric_percent": 100.0 * self.electric / HIGHEST["electric"],
             "first_coupling_kn": forces[0],
-            "greatest_tension_kn": self.extremes[0],
-            "greatest_compression_kn": self.extremes[1],
+            "greatest_tension_kn": float(self.extremes[0].max()),
+            "greatest_compression_kn": -float(self.extremes[1].min()),
+            "greatest_kn": self.extremes[0].tolist(),
+            "least_kn": self.extremes[1].tolist(),
             "cylinder_bar": (self.cylinder_bar, 0.96 * self.cylinder_bar),
             "pipe_bar": 5.0 - self.cylinder_bar * 1.5 / 3.8,
             "energy_kwh": self.energy_kwh,
@@ -134,6 +142,11 @@ class FakeSession:
             "forces_kn": forces,
             "finished": self.time_s >= self.end_s - 0.5 * self.step_s,
         }
+
+    def take_peaks(self) -> tuple[float, float]:
+        force = self.forces_kn()[0]
+        (least, greatest), self.peaks = self.peaks, (math.inf, -math.inf)
+        return min(least, force), max(greatest, force)
 
     def cycles(self) -> list[tuple[float, float, float]]:
         return [(abs(b - a), 0.5 * (a + b), 0.5) for a, b in pairwise(self.turns) if abs(b - a) > 0.1]
@@ -162,7 +175,7 @@ class FakeKeeper:
         self.taken += 1
 
 
-HIGHEST = {"drive": 15, "brake": 15, "electric": 8}
+HIGHEST = {"drive": 15, "brake": 15, "electric": 15}
 
 
 def fake_hello(vehicles: int = 21, name: str = "Twenty wagons over a hill", folder: str = "reports/hill") -> dict[str, Any]:

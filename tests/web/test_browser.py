@@ -11,19 +11,39 @@ from tractionpower.web.keys import LEVEL_KEYS
 
 pytestmark = pytest.mark.skipif(find_browser() is None, reason="no Chromium is found on the path")
 
+BLOW_KN = 987.6
+
 NASTY = '<img src=x onerror="document.title=1"> & "Zug"'
 
 
 @pytest.fixture(scope="module")
 def visit():
     """Return what was seen on a page that was driven by keys; one visit for all tests, for a browser starts slowly."""
-    serving = Serving(FakeSession(), fake_hello(name=NASTY))
-    seen = asyncio.run(_visit(serving.address, serving.session))
+    serving = Serving(FakeSession(blow_kn=BLOW_KN), fake_hello(name=NASTY))
+    seen = asyncio.run(_visit(serving.address, serving.session, lambda: serving.is_alive))
     serving.join()
     return seen | {"session": serving.session, "ended": serving.ended}
 
 
-async def _visit(address, session):
+_BUTTONS_THAT_CANNOT_BE_HIT = """[...document.querySelectorAll('button')].filter((made) => {
+    const box = made.getBoundingClientRect();
+    const corners = [[box.left + 3, box.top + 3], [box.right - 3, box.bottom - 3]];
+    return corners.some(([x, y]) => !made.contains(document.elementFromPoint(x, y)));
+}).map((made) => made.textContent)"""
+
+_TEXTS_THAT_ARE_CUT = """[...document.querySelectorAll('#desk *, figcaption *, .chart header, #panel *, #top *, #banner')]
+    .filter((made) => made.scrollWidth > made.clientWidth + 1 && made.clientWidth > 0).map((made) => made.textContent)"""
+
+
+async def _pointed_at_first(page):
+    """Return what is told of the first coupling when the pointer is on it."""
+    box = await page.value("(({left, top}) => [left, top])(document.querySelector('#along canvas').getBoundingClientRect())")
+    await page.call("Input.dispatchMouseEvent", type="mouseMoved", x=box[0] + 50, y=box[1] + 40)
+    await page.until("document.querySelector('#along-value').textContent.startsWith('1|2')")
+    return await page.text("#along-value")
+
+
+async def _visit(address, session, serving_is_alive):
     seen = {"levels": {}}
     async with Browser() as page:
         await page.open(address)
@@ -31,7 +51,7 @@ async def _visit(address, session):
         await page.until("document.querySelector('#banner').textContent.includes('Enter')")
         seen["overflow"] = await page.value("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
         await page.press("Enter", "Enter")
-        await page.until("document.querySelector('#banner').hidden")
+        await page.until("document.querySelector('#banner').textContent === ''")
         for code, (control, level) in LEVEL_KEYS.items():
             await page.press(code)
             await page.until(f"document.querySelector('#lever-{control}').textContent === '{level}'")
@@ -47,9 +67,9 @@ async def _visit(address, session):
         await page.value("document.querySelector('.lever.drive [data-level=\"15\"]').click()")
         await page.until("document.querySelector('#lever-drive').textContent === '15'")
         await page.value("document.querySelector('[data-factor=\"10\"]').click()")
-        await page.until("parseFloat(document.querySelector('#speed').textContent) > 10")
+        await page.until("parseFloat(document.querySelector('#speed').textContent) > 3")
         await page.press("Space", " ")
-        await page.until("document.querySelector('#lever-brake').textContent === 'EM'")
+        await page.until("document.querySelector('#lever-brake').textContent === 'E'")
         await page.until("parseFloat(document.querySelector('#value-cylinder_first_bar').textContent) > 1")
         await page.press("KeyP")
         await page.until("document.querySelector('#pause').textContent === 'Go on'")
@@ -61,8 +81,16 @@ async def _visit(address, session):
         seen["images"] = await page.value("document.images.length")
         inks = "[...document.querySelectorAll('canvas')].map((c) => c.getContext('2d').getImageData(0, 0, c.width, c.height)"
         seen["inked"] = await page.value(f"{inks}.data.some((v) => v > 0))")
+        seen["along"] = await _pointed_at_first(page)
+        seen["texts"] |= {"controls": await page.text("#charts .chart b"), "banner": await page.text("#banner")}
+        seen["hidden"] = await page.value(_BUTTONS_THAT_CANNOT_BE_HIT)
+        seen["cut"] = await page.value(_TEXTS_THAT_ARE_CUT)
+        await page.value("document.querySelector('#finish').click()")
+        await asyncio.sleep(0.1)
+        seen["asked"] = [await page.text("#finish"), serving_is_alive()]
         await page.value("document.querySelector('#finish').click()")
         await page.until("document.querySelector('#banner').textContent.includes('reports/hill')")
+        seen["cut"] += await page.value(_TEXTS_THAT_ARE_CUT)
         await asyncio.sleep(0.2)
         seen["complaints"] = page.complaints
     return seen
@@ -106,6 +134,26 @@ def test_the_pace_is_shown(visit):
 def test_every_diagram_is_drawn(visit):
     assert len(visit["inked"]) == 6 + 2 + 5
     assert all(visit["inked"])
+
+
+def test_the_extremes_along_the_train_are_those_of_the_program_not_of_the_frames(visit):
+    greatest, least = visit["session"].extremes[:, 0]
+    assert greatest == BLOW_KN
+    told = [float(word) for word in visit["along"].replace("−", "-").replace(",", "").split() if word[-1].isdigit()][1:]
+    assert told == pytest.approx([least, greatest], abs=0.06)
+
+
+def test_emergency_has_a_name_and_no_number(visit):
+    assert visit["texts"]["controls"].endswith("/ emergency")
+
+
+@pytest.mark.parametrize("what", ["hidden", "cut"])
+def test_every_button_can_be_hit_and_no_text_is_cut(visit, what):
+    assert visit[what] == []
+
+
+def test_a_long_drive_does_not_end_by_one_click(visit):
+    assert visit["asked"] == ["End the drive?", True]
 
 
 def test_the_drive_ends_by_its_button(visit):

@@ -117,9 +117,9 @@ def test_a_pause_stops_the_train_and_loses_nothing():
 
 
 def test_a_notice_says_what_was_clipped():
-    drive = Drive(FakeSession(), START | {3: [SetLevel("electric", 12)]}, 5)
-    assert drive.of("notice") == [{"text": "electric level 12 is above the highest, 8: taken as 8"}]
-    assert drive.keeper.notes[-1][1] == {"electric": 8.0}
+    drive = Drive(FakeSession(), START | {3: [SetLevel("electric", 18)]}, 5)
+    assert drive.of("notice") == [{"text": "electric level 18 is above the highest, 15: taken as 15"}]
+    assert drive.keeper.notes[-1][1] == {"electric": 15.0}
 
 
 def test_statistics_and_rows_are_taken_every_second():

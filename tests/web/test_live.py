@@ -13,8 +13,15 @@ from tractionpower.results.kept import input_hash_of
 from tractionpower.results.results import Results
 from tractionpower.results.store import RunWriter
 from tractionpower.web import live as live_module
+from tractionpower.web.controls import Controls
+from tractionpower.web.desk import Desk
 from tractionpower.web.hello import has_independent_brake, hello, highest_levels
 from tractionpower.web.live import LiveRun
+from tractionpower.web.orders import Action, SetFactor, SetLevel
+from tractionpower.web.pacing import Pacer
+from tractionpower.web.quantities import CHARTS
+
+POINT = ("time_s", *(name for chart in CHARTS for name in chart))
 
 STIFF = {"draw": {"stiffness_kn_per_mm": 5.0}, "damping_kns_per_m": 50.0, "slack_mm": 20.0}
 BRAKED = {"traction": {}, "brake": {"brake_ratio": 0.6}, "commands": [{"time_s": 0.0, "drive": 2}, {"time_s": 3.0, "drive": 0}]}
@@ -29,6 +36,30 @@ def new_live(folder, given=None):
     given = given or scenario()
     writer = RunWriter(folder, "test-driven", input_hash_of(given), kind="dynamics", scenario=given)
     return LiveRun(given, writer, "test-driven")
+
+
+def drive_by_clock(live, plan, frames):
+    """Drive from a desk whose clock stands still but for its waiting; `plan` gives orders by the number of frames before them."""
+    told, now = [], [0.0]
+
+    def publish(kind, content):
+        if kind == "frame":
+            told.append(content)
+            for order in plan.get(len(told), ()):
+                desk.order(order)
+            if len(told) >= frames:
+                desk.stop()
+
+    def sleep(seconds):
+        now[0] += seconds
+
+    compiled = live.session.compiled
+    controls = Controls(highest_levels(compiled), independent=has_independent_brake(compiled))
+    pacer = Pacer(clock=lambda: now[0], sleep=sleep)
+    desk = Desk(live.session, controls, live, publish, pacer=pacer, clock=lambda: now[0])
+    desk.run()
+    assert desk.failure is None
+    return told
 
 
 def set_and_run(live, until_s, **setting):
@@ -82,6 +113,24 @@ def test_the_results_know_the_case_as_it_was_driven(driven):
     assert [row.brake for row in case.commands] == [None, 9, "emergency", 0]
     controls = pd.read_parquet(driven[0] / "controls.parquet")
     assert {*controls.loc[controls["time_s"].between(3.1, 3.9), "drive"]} == {15}
+
+
+def test_the_page_is_told_the_extremes_of_the_results_however_fast_time_passes(tmp_path):
+    live = new_live(tmp_path / "out")
+    live.begin()
+    told = drive_by_clock(live, {1: [SetFactor(10), SetLevel("drive", 15)], 20: [SetLevel("drive", 0), Action("emergency")]}, 60)
+    live.close()
+    live.finish()
+    extremes = pd.read_parquet(tmp_path / "out" / "coupling_extremes.parquet")
+    last = told[-1]["snapshot"]
+    assert last["greatest_kn"] == pytest.approx(extremes["greatest_tension_kn"].tolist())
+    assert last["least_kn"] == pytest.approx((-extremes["greatest_compression_kn"]).tolist())
+    greatest, least = float(extremes["greatest_tension_kn"][0]), -float(extremes["greatest_compression_kn"][0])
+    points = [dict(zip(POINT, point, strict=True)) for frame in told for point in frame["points"]]
+    assert max(point["first_coupling_greatest_kn"] for point in points) == pytest.approx(greatest, abs=1e-4)
+    assert min(point["first_coupling_least_kn"] for point in points) == pytest.approx(least, abs=1e-4)
+    # The instants that are shown alone would understate it.
+    assert max(point["first_coupling_kn"] for point in points) < greatest - 1.0
 
 
 def test_rows_reach_the_disk_while_driving(tmp_path, monkeypatch):

@@ -49,17 +49,25 @@ def answers(serving, requests):
     return asyncio.run(go())
 
 
+async def finish(page):
+    await page.send_json({"do": "finish"})
+    await received(page, "over")
+
+
 @pytest.fixture
 def serving():
     made = Serving()
-
-    async def finish(page):
-        await page.send_json({"do": "finish"})
-        await received(page, "over")
-
     yield made
     if made.is_alive:
         talk(made, finish)
+
+
+@pytest.fixture(scope="module")
+def standing():
+    """Return a server that nobody drives: one for all that is only asked for."""
+    made = Serving()
+    yield made
+    talk(made, finish)
 
 
 def test_it_listens_on_loopback_only():
@@ -74,9 +82,9 @@ def test_a_port_that_is_taken_is_told():
             listen(first.getsockname()[1])
 
 
-def test_the_page_and_its_files_come_with_a_policy_that_lets_nothing_in_from_elsewhere(serving):
-    paths = [f"/?key={serving.key}", *(f"/static/{name}" for name in KINDS)]
-    for (status, _, heads), path in zip(answers(serving, [(path, {}) for path in paths]), paths, strict=True):
+def test_the_page_and_its_files_come_with_a_policy_that_lets_nothing_in_from_elsewhere(standing):
+    paths = [f"/?key={standing.key}", *(f"/static/{name}" for name in KINDS)]
+    for (status, _, heads), path in zip(answers(standing, [(path, {}) for path in paths]), paths, strict=True):
         assert status == 200, path
         policy = heads["Content-Security-Policy"]
         assert "default-src 'none'" in policy
@@ -100,38 +108,38 @@ def test_the_page_and_its_files_come_with_a_policy_that_lets_nothing_in_from_els
     ],
     ids=str,
 )
-def test_a_foreign_host_or_origin_is_refused_everywhere(serving, heads):
-    key = serving.key
-    found = answers(serving, [(path, heads) for path in (f"/?key={key}", "/static/drive.js", f"/socket?key={key}")])
+def test_a_foreign_host_or_origin_is_refused_everywhere(standing, heads):
+    key = standing.key
+    found = answers(standing, [(path, heads) for path in (f"/?key={key}", "/static/drive.js", f"/socket?key={key}")])
     assert [status for status, _, _ in found] == [403] * 3
     assert all(key not in text for _, text, _ in found)
 
 
-def test_its_own_origin_is_let_in_under_both_names(serving):
-    port = serving.base.rsplit(":", 1)[1]
+def test_its_own_origin_is_let_in_under_both_names(standing):
+    port = standing.base.rsplit(":", 1)[1]
     heads = [{"Host": f"{name}:{port}", "Origin": f"http://{name}:{port}"} for name in ("127.0.0.1", "localhost")]
-    assert [status for status, _, _ in answers(serving, [(f"/?key={serving.key}", head) for head in heads])] == [200, 200]
+    assert [status for status, _, _ in answers(standing, [(f"/?key={standing.key}", head) for head in heads])] == [200, 200]
 
 
 @pytest.mark.parametrize("key", ["", "?key=", "?key=wrong", "?key=%ff%fe", "?key=é"])
-def test_without_the_key_there_is_no_page_and_no_socket(serving, key):
-    found = answers(serving, [(f"{path}{key}", {}) for path in ("/", "/socket")])
+def test_without_the_key_there_is_no_page_and_no_socket(standing, key):
+    found = answers(standing, [(f"{path}{key}", {}) for path in ("/", "/socket")])
     assert [status for status, _, _ in found] == [403, 403]
     assert "address" in found[0][1]
 
 
 @pytest.mark.parametrize("name", ["nothing.js", "..%2Fserver.py", "%2e%2e%2fguard.py", "uplot-LICENSE.txt", "drive.js%00"])
-def test_no_other_file_is_given(serving, name):
-    ((status, text, _),) = answers(serving, [(f"/static/{name}", {})])
+def test_no_other_file_is_given(standing, name):
+    ((status, text, _),) = answers(standing, [(f"/static/{name}", {})])
     assert status == 404
     assert "import" not in text
 
 
-def test_a_socket_with_a_foreign_origin_is_refused(serving):
+def test_a_socket_with_a_foreign_origin_is_refused(standing):
     async def go():
         async with aiohttp.ClientSession() as client:
             with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
-                await client.ws_connect(f"{serving.base}/socket?key={serving.key}", origin="http://evil.example")
+                await client.ws_connect(f"{standing.base}/socket?key={standing.key}", origin="http://evil.example")
             return refused.value.status
 
     assert asyncio.run(go()) == 403

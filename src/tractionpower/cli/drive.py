@@ -15,12 +15,16 @@ import typer
 from tractionpower.cli.case_call import CaseName, ChangesOfCase, call_case
 from tractionpower.cli.look import look_of
 from tractionpower.cli.messages import tell
-from tractionpower.cli.options import Force, NoReports, ReportLanguage, Template, out_option
+from tractionpower.cli.options import Force, NoReports, Template, out_option
 from tractionpower.cli.study_call import exit_code
 
 if TYPE_CHECKING:
     from tractionpower.results.store import RunWriter
     from tractionpower.web.live import LiveRun
+
+Language = Annotated[
+    str | None, typer.Option("--language", metavar="en|pl", help="Language of the reports; the driving page is in English.")
+]
 
 NEEDED = "the driving page needs the package aiohttp: pip install tractionpower[drive]"
 
@@ -35,7 +39,7 @@ def drive(
     stay: Annotated[bool, typer.Option("--stay", help="Go on when the page is closed; without it the drive ends then.")] = False,
     no_reports: NoReports = False,
     template: Template = None,
-    language: ReportLanguage = None,
+    language: Language = None,
     force: Force = False,
 ) -> None:
     """Drive a train from a page in the browser, in real time, and write the results."""

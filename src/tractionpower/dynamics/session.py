@@ -27,7 +27,7 @@ from tractionpower.kernels.chain_state import (
 )
 from tractionpower.kernels.chain_tally import present_reduction, set_present
 from tractionpower.model.dynamics.case import DynamicsScenario
-from tractionpower.results.dynamics_snapshot import distributions, snapshot
+from tractionpower.results.dynamics_snapshot import Air, distributions, snapshot
 
 ROWS = 1024
 """Rows that a block may record before they are taken away."""
@@ -146,9 +146,9 @@ class Session:
         """Return what is the case now, in units of the boundary: time, controls, motion of the first vehicle, forces."""
         chain = self.compiled.chain
         set_present(chain, self.state, self._work)
-        reduction = present_reduction(chain, self.state)
+        air = Air(present_reduction(chain, self.state), float(chain.air[0]["pipe_pa"]))
         forces = self._work.force[: len(self.state.links)].copy()
-        return snapshot(self.state, forces, reduction, float(chain.air[0]["pipe_pa"]), chain.vehicles["weight_n"])
+        return snapshot(self.state, forces, self._work.applied.copy(), air, chain.vehicles["weight_n"])
 
     def distributions(self) -> dict[str, Any]:
         """Return the distributions of levels, speed, force of the first coupling and acceleration up to now."""

@@ -33,6 +33,9 @@ class Session(Protocol):
     def snapshot(self) -> Mapping[str, Any]:
         """Return what is the case now, in units of the boundary."""
 
+    def take_peaks(self) -> tuple[float, float]:
+        """Return least and greatest force of the first coupling [kN] in the steps since the last call."""
+
     def statistics(self) -> Mapping[str, Any]:
         """Return the distributions and cycles up to now, by name; see `tractionpower.web.messages.statistics_message`."""
 

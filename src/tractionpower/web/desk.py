@@ -119,7 +119,7 @@ class Desk:
         self._ticks += self.factor
         if self._ticks >= FRAME_TICKS:
             self._ticks = 0
-            self._points.append(chart_point(self._session.snapshot()))
+            self._points.append(chart_point(self._session.snapshot(), self._session.take_peaks()))
 
     def _obey(self) -> None:
         while True:

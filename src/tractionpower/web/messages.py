@@ -17,6 +17,8 @@ from tractionpower.web.quantities import CHARTS, FIRST_AND_LAST
 RAINFLOW_BINS = 24
 """Bins of the ranges of rainflow cycles on the page."""
 
+_NOTHING: Mapping[str, Any] = {"lowest": 0.0, "width": 1.0, "bars": []}
+
 _DECIMALS = 6  # of what is sent: below a pixel, and half the length of all digits
 
 
@@ -40,10 +42,16 @@ def frame_message(content: Mapping[str, Any]) -> str:
     return message("frame", {**content, "snapshot": snapshot})
 
 
-def chart_point(snapshot: Mapping[str, Any]) -> list[Any]:
-    """Return what the rolling diagrams need of a snapshot: the time, then their quantities in order."""
+def chart_point(snapshot: Mapping[str, Any], peaks_kn: tuple[float, float]) -> list[Any]:
+    """Return what the rolling diagrams need: the time, then their quantities in order.
+
+    `peaks_kn` are least and greatest force of the first coupling in the steps since the point before: a blow lasts shorter than
+    the time between two points.
+    """
+    least, greatest = peaks_kn
+    told = {**snapshot, "first_coupling_least_kn": least, "first_coupling_greatest_kn": greatest}
     names = ("time_s", *(name for chart in CHARTS for name in chart))
-    return [_plain(snapshot.get(name)) for name in names]
+    return [_plain(told.get(name)) for name in names]
 
 
 def statistics_message(statistics: Mapping[str, Any]) -> str:
@@ -75,7 +83,9 @@ def _histogram(frequencies: Any, edges: Any) -> dict[str, Any]:
     """Return a distribution from the first to the last bin that has something."""
     inner = _inner(np.asarray(frequencies, dtype=np.float64))
     filled = np.nonzero(inner)[0]
-    first, last = (int(filled[0]), int(filled[-1])) if filled.size else (0, 0)
+    if not filled.size:
+        return dict(_NOTHING)
+    first, last = int(filled[0]), int(filled[-1])
     return {
         "lowest": float(edges[first]),
         "width": float(edges[1] - edges[0]),
@@ -95,7 +105,7 @@ def _rainflow(cycles: Iterable[Sequence[float]]) -> dict[str, Any]:
     rows = np.asarray([*cycles], dtype=np.float64).reshape(-1, 3)
     greatest = float(rows[:, 0].max(initial=0.0))
     if greatest <= 0.0:
-        return {"lowest": 0.0, "width": 1.0, "bars": []}
+        return dict(_NOTHING)
     width = greatest / RAINFLOW_BINS
     bars, _ = np.histogram(rows[:, 0], bins=RAINFLOW_BINS, range=(0.0, greatest), weights=rows[:, 2])
     return {"lowest": 0.0, "width": width, "bars": bars.tolist()}

@@ -51,7 +51,7 @@ CHARTS = (
     ("drive", "brake"),
     ("speed_kmh",),
     ("acceleration_mps2",),
-    ("first_coupling_kn",),
+    ("first_coupling_kn", "first_coupling_least_kn", "first_coupling_greatest_kn"),
     ("energy_kwh",),
     ("damage_index",),
 )

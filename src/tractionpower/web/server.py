@@ -22,6 +22,10 @@ KINDS = {
     "canvas.js": "text/javascript",
     "keys.js": "text/javascript",
     "charts.js": "text/javascript",
+    "page.js": "text/javascript",
+    "levers.js": "text/javascript",
+    "numbers.js": "text/javascript",
+    "forces.js": "text/javascript",
     "drive.js": "text/javascript",
     "uplot.js": "text/javascript",
 }

@@ -141,12 +141,13 @@ function drawTrain(ctx, place, length, x, y) {
   ctx.fill();
 }
 
-export function drawHeat(canvas, heat, name) {
+// Rows above the `highest` level have no number: the one there is counts emergency.
+export function drawHeat(canvas, heat, name, highest) {
   const { ctx, width, height } = begin(canvas);
   const [left, right, top, bottom] = [22, 6, 4, 14];
   const rows = heat.rows.length;
   const columns = Math.max(heat.rows[0]?.length ?? 0, 8);
-  const most = Math.max(...heat.rows.flat(), 1e-12);
+  const most = Math.max(...heat.rows.flat(), 0);
   const wide = (width - left - right) / columns;
   const high = (height - top - bottom) / rows;
   ctx.fillStyle = colour("off");
@@ -161,7 +162,13 @@ export function drawHeat(canvas, heat, name) {
   );
   ctx.globalAlpha = 1;
   const every = Math.max(tickStep(rows, Math.max((height - 18) / 15, 1)), 1);
-  for (let level = 0; level < rows; level += every) text(ctx, String(level), left - 4, top + (rows - level - 0.5) * high + 3.5, "right");
+  const label = (level, words) => text(ctx, words, left - 4, top + (rows - level - 0.5) * high + 3.5, "right");
+  const isTold = rows - 1 > highest;
+  for (let level = 0; level < rows; level += every) {
+    if (!isTold || level <= highest && (rows - 1 - level) * high > 8) label(level, String(level));
+  }
+  if (isTold) label(rows - 1, "E");
+  if (most <= 0) nothing(ctx, (left + width - right) / 2, (height - bottom + top) / 2);
   ticksBelow(ctx, heat.lowest, heat.lowest + columns * heat.width, left, width - right, height - 3);
   return most;
 }
@@ -170,6 +177,10 @@ export function drawBars(canvas, histogram, name, logarithmic = false) {
   const { ctx, width, height } = begin(canvas);
   const [left, right, top, bottom] = [26, 6, 5, 14];
   const { bars, lowest, width: bin } = histogram;
+  if (!bars.length) {
+    nothing(ctx, width / 2, height / 2);
+    return;
+  }
   const most = Math.max(...bars, 1e-12);
   const floor = 0.3; // below half a cycle on a logarithmic axis
   const part = (value) => (logarithmic ? Math.log(Math.max(value, floor) / floor) / Math.log(Math.max(most, 1) * 1.2 / floor) : value / most);
@@ -186,6 +197,10 @@ export function drawBars(canvas, histogram, name, logarithmic = false) {
   ctx.fillStyle = colour(name);
   bars.forEach((value, k) => value > 0 && ctx.fillRect(left + k * wide, y(value), Math.max(wide - 0.7, 0.7), height - bottom - y(value)));
   ticksBelow(ctx, lowest, lowest + count * bin, left, width - right, height - 3);
+}
+
+function nothing(ctx, x, y) {
+  text(ctx, "nothing yet", x, y, "center");
 }
 
 function ticksBelow(ctx, low, high, left, right, y) {

@@ -3,18 +3,22 @@
 
 export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 export const number = (value, decimals) =>
-  value === null || value === undefined || Number.isNaN(value) ? "–" : value.toFixed(decimals).replace("-", "−");
+  value === null || value === undefined || Number.isNaN(value) ? "–" : value.toFixed(decimals).replace(/^-(?=0\.?0*$)/, "").replace("-", "−");
 
 const CHARTS = [
   { title: "Controls", small: "drive u₁, brake −u₂", names: ["drive", "brake"], colours: ["blue", "vermilion"], decimals: 0, stepped: true },
   { title: "Speed", unit: "km/h", names: ["speed_kmh"], colours: ["blue"], decimals: 1, least: 10, fromZero: true },
   { title: "Acceleration", small: "first vehicle", unit: "m/s²", names: ["acceleration_mps2"], colours: ["green"], decimals: 3, least: 0.1 },
-  { title: "First coupling", small: "tension positive", unit: "kN", names: ["first_coupling_kn"], colours: ["purple"], decimals: 1, least: 20 },
+  {
+    title: "First coupling", small: "tension positive", unit: "kN", decimals: 1, least: 20, peaks: true,
+    names: ["first_coupling_kn", "first_coupling_least_kn", "first_coupling_greatest_kn"], colours: ["purple", "purple", "purple"],
+  },
   { title: "Work of traction", unit: "kWh", names: ["energy_kwh"], colours: ["orange"], decimals: 2, least: 1, fromZero: true },
   { title: "Damage index", small: "cycles of 100 kN, first coupling", names: ["damage_index"], colours: ["sky"], decimals: 3, least: 0.01, fromZero: true },
 ];
 const NAMES = ["time_s", ...CHARTS.flatMap((chart) => chart.names)];
 const MOST = 12000; // points kept; then the older half is thinned out
+const EXTREME = { first_coupling_least_kn: Math.min, first_coupling_greatest_kn: Math.max }; // of two points that become one
 
 export class Strips {
   constructor(place, windowS) {
@@ -65,12 +69,13 @@ export class Strips {
           values: (plot, ticks) => ticks.map((tick) => String(tick).replace("-", "−")),
         },
       ],
+      bands: what.peaks ? [{ series: [3, 2], fill: `${colour(what.colours[0])}40` }] : undefined,
       series: [
         {},
         ...what.names.map((name, place) => ({
           stroke: colour(what.colours[place]),
           fill: what.stepped ? `${colour(what.colours[place])}30` : undefined,
-          width: 1.6,
+          width: what.peaks && place > 0 ? 0.8 : 1.6,
           points: { show: false },
           paths: what.stepped ? uPlot.paths.stepped({ align: 1 }) : undefined,
         })),
@@ -90,7 +95,7 @@ export class Strips {
     point.forEach((value, place) => this.data[place].push(NAMES[place] === "brake" ? -value : value));
     if (times.length > MOST) {
       const half = MOST / 2;
-      this.data = this.data.map((values) => values.filter((_, place) => place >= half || place % 2 === 0));
+      this.data = this.data.map((values, of) => [...thinned(values.slice(0, half), EXTREME[NAMES[of]]), ...values.slice(half)]);
     }
   }
 
@@ -116,9 +121,17 @@ export class Strips {
   #write(chart) {
     const hovered = chart.at !== null && chart.at !== undefined;
     const row = hovered ? (chart.first ?? 0) + chart.at : this.data[0].length - 1;
-    const values = chart.what.names.map((name) => number(this.data[NAMES.indexOf(name)][row], chart.what.decimals));
-    const text = hovered ? `${number(this.data[0][row], 1)} s: ${values.join(" / ")}` : values.join(" / ");
+    const value = (name) => this.#words(name, this.data[NAMES.indexOf(name)][row], chart.what.decimals);
+    const [now, ...others] = chart.what.names.map(value);
+    const peaks = hovered ? ` (${others.join(" to ")})` : "";
+    const words = chart.what.peaks ? `${now}${peaks}` : [now, ...others].join(" / ");
+    const text = hovered ? `${number(this.data[0][row], 1)} s: ${words}` : words;
     if (chart.value.textContent !== text) chart.value.textContent = text;
+  }
+
+  // Emergency is counted as a level above the highest of the brake: it has a name, no number.
+  #words(name, value, decimals) {
+    return name === "brake" && -value > this.highest.brake ? "emergency" : number(value, decimals);
   }
 
   #resize() {
@@ -126,6 +139,13 @@ export class Strips {
       plot.setSize({ width: Math.max(inside.clientWidth, 80), height: Math.max(inside.clientHeight, 40) });
     }
   }
+}
+
+// Every second point of an even number, with the extreme of both where the quantity is one.
+function thinned(values, extreme) {
+  const kept = [];
+  for (let k = 1; k < values.length; k += 2) kept.push(extreme ? extreme(values[k - 1], values[k]) : values[k]);
+  return kept;
 }
 
 // A few levels either way, the highest among them.
