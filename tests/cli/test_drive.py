@@ -159,3 +159,8 @@ def test_a_case_with_errors_is_refused_with_all_of_them(case, tmp_path, capsys):
     assert "commands[0]" in said
     assert "commands[1]" in said
     assert not (tmp_path / "out").exists()
+
+
+def test_the_help_says_in_which_language_the_page_is(capsys):
+    assert main(["dynamics", "drive", "--help"]) == 0
+    assert "driving page is in English" in " ".join(re.sub(r"[│|]", " ", capsys.readouterr().out).split())

@@ -35,6 +35,10 @@ _TEXTS_THAT_ARE_CUT = """[...document.querySelectorAll('#desk *, figcaption *, .
     .filter((made) => made.scrollWidth > made.clientWidth + 1 && made.clientWidth > 0).map((made) => made.textContent)"""
 
 
+def _keys_of(wanted):
+    return [(code, control, level) for code, (control, level) in LEVEL_KEYS.items() if control == wanted]
+
+
 async def _pointed_at_first(page):
     """Return what is told of the first coupling when the pointer is on it."""
     box = await page.value("(({left, top}) => [left, top])(document.querySelector('#along canvas').getBoundingClientRect())")
@@ -52,10 +56,12 @@ async def _visit(address, session, serving_is_alive):
         seen["overflow"] = await page.value("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
         await page.press("Enter", "Enter")
         await page.until("document.querySelector('#banner').textContent === ''")
-        for code, (control, level) in LEVEL_KEYS.items():
-            await page.press(code)
-            await page.until(f"document.querySelector('#lever-{control}').textContent === '{level}'")
-            seen["levels"][code] = session.drive if control == "drive" else session.brake
+        for pair in zip(*(_keys_of(control) for control in ("drive", "brake")), strict=True):
+            for code, _, _ in pair:
+                await page.press(code)
+            for code, control, level in pair:
+                await page.until(f"document.querySelector('#lever-{control}').textContent === '{level}'")
+                seen["levels"][code] = getattr(session, control)
         await page.press("Digit0")
         await page.press("ArrowUp", "ArrowUp", hold=3)
         await page.press("ArrowUp", "ArrowUp")

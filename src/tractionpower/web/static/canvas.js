@@ -163,7 +163,7 @@ export function drawHeat(canvas, heat, name, highest) {
   ctx.globalAlpha = 1;
   const every = Math.max(tickStep(rows, Math.max((height - 18) / 15, 1)), 1);
   const label = (level, words) => text(ctx, words, left - 4, top + (rows - level - 0.5) * high + 3.5, "right");
-  const isTold = rows - 1 > highest;
+  const isTold = highest > 0 && rows - 1 > highest;
   for (let level = 0; level < rows; level += every) {
     if (!isTold || level <= highest && (rows - 1 - level) * high > 8) label(level, String(level));
   }

@@ -44,6 +44,8 @@ const HANDLERS = {
     const where = message.why === "failed" ? "the terminal says why." : `results go to ${hello.folder}.`;
     say(`${ENDS[message.why] ?? "The drive is over"} at ${number(message.time_s, 1)} s; ${where} This page may be closed.`);
     document.body.classList.add("over");
+    shown = null; // a long word here takes room from what is drawn
+    drawStatistics();
     document.querySelectorAll("button").forEach((made) => { made.disabled = made.id !== "theme"; });
   },
 };

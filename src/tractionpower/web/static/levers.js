@@ -3,6 +3,7 @@ import { number } from "./charts.js";
 import { at, button, make, write } from "./page.js";
 
 const MOST_NOTCHES = 16; // levels of the electric brake that have a button each, in two rows; more have a slider
+const MANY = 20; // levels of a lever beyond which they are written smaller
 const TITLES = { drive: "Drive u₁", brake: "Brake u₂" };
 
 export function makeLevers(hello, labels, send) {
@@ -18,11 +19,12 @@ function makeLever(hello, control, labels, send) {
   const value = make("b", "0");
   value.id = `lever-${control}`;
   head.append(value);
-  const notches = make("div", "", "notches");
+  const highest = Math.max(hello.highest[control], 15);
+  const notches = make("div", "", highest > MANY ? "notches many" : "notches");
   const keyOf = Object.fromEntries(
     Object.entries(hello.keys.keys).filter(([, order]) => order.set === control).map(([code, order]) => [order.level, labels[code]]),
   );
-  for (let level = Math.max(hello.highest[control], 15); level >= 0; level -= 1) {
+  for (let level = highest; level >= 0; level -= 1) {
     const made = button(String(level), () => send({ set: control, level }));
     made.append(make("kbd", keyOf[level] ?? ""));
     made.dataset.level = level;
