@@ -36,7 +36,7 @@ def drive_by_page(address, *orders, moving=None):
                 frames += found["kind"] == "frame"
                 if moving is not None and found["kind"] == "frame" and found["snapshot"]["time_s"] > 0.1:
                     moving.set()
-                if frames >= 5 and waiting:
+                if frames >= 3 and waiting:
                     frames = 0
                     await page.send_json(waiting.pop(0))
                 if found["kind"] == "over":

@@ -14,7 +14,7 @@ from tractionpower.web.drive import Drive, Ended, drive
 class Serving:
     """A drive that ends soon after its page is closed; `ended` or `failure` tell how."""
 
-    def __init__(self, session: FakeSession | None = None, hello: dict[str, Any] | None = None, leave_s: float = 0.3) -> None:
+    def __init__(self, session: FakeSession | None = None, hello: dict[str, Any] | None = None, leave_s: float = 0.15) -> None:
         self.session = session or FakeSession()
         self.keeper = FakeKeeper()
         what = Drive(self.session, Controls(HIGHEST, independent=True), self.keeper, hello or fake_hello())

@@ -151,12 +151,12 @@ def test_a_page_is_greeted_and_drives(serving):
         assert greeting["name"] == "Twenty wagons over a hill"
         assert len(greeting["keys"]["keys"]) >= 32
         await page.send_json({"set": "drive", "level": 15})
-        while (frame := await received(page, "frame"))["snapshot"]["time_s"] < 0.5:
+        await received(page, "statistics")
+        while (frame := await received(page, "frame"))["snapshot"]["time_s"] < 0.2:
             pass
         assert frame["snapshot"]["drive"] == 15
         assert frame["snapshot"]["speed_kmh"] > 0.0
         assert frame["desk"]["longest_lag_ms"] >= frame["desk"]["lag_ms"] >= 0.0
-        await received(page, "statistics")
         await page.send_json({"do": "finish"})
         assert (await received(page, "over"))["why"] == "stopped"
 
