@@ -27,6 +27,7 @@ COMMANDS = [
     ["dynamics"],
     ["dynamics", "run"],
     ["dynamics", "drive"],
+    ["dynamics", "check"],
     ["report"],
     ["export"],
     ["import"],

@@ -7,7 +7,7 @@ from tractionpower.cli.messages import exit_code_of, has_errors, summary
 from tractionpower.errors import InputError, Problem
 
 SCHEMAS = ["study", "line", "supply", "timetable", "train", "vehicle", "limits", "conductors", "duty_classes"]
-SCHEMAS += ["rectifier_units", "measured", "report"]
+SCHEMAS += ["rectifier_units", "measured", "report", "case", "stations", "coupling"]
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def test_check_lists_all_problems_by_file(study, capsys):
     assert captured.out == "3 errors\n"
     assert captured.err.index("line.yaml:2: line.tracks: found 5") < captured.err.index("line.yaml:3: line.statoins")
     assert "remedy: did you mean stations?" in captured.err
-    assert "supply.yaml: supply: found the file is empty" in captured.err
+    assert "supply.yaml: supply: the file is empty" in captured.err
 
 
 def test_check_as_json(study, capsys):

@@ -96,7 +96,7 @@ def test_all_faults_of_a_train_are_told_and_nothing_is_drawn(tmp_path, study, ca
     assert main(["curves", "six/rollingstock/trains/local.yaml"]) == 1
     told = capsys.readouterr().err
     assert told.count("error: ") == 3
-    assert "vehicles[railcar].drive.efficiency_map: found the load of 50 % has no point at 9 km/h" in told
+    assert "vehicles[railcar].drive.efficiency_map: the load of 50 % has no point at 9 km/h" in told
     assert "vehicles[railcar].drive.fold_back_from_v: found a fold-back from 4000 V to 3900 V by default" in told
     assert "warning: six/rollingstock/trains/local.yaml: vehicles[railcar].resistance: " in told
     assert "3 errors, 1 warning" in told

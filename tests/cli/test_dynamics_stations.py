@@ -40,6 +40,6 @@ def test_the_shipped_case_runs_reports_and_exports(working_folder, capsys):
 def test_errors_are_told_with_their_place_and_nothing_is_written(working_folder, capsys):
     assert run("--set", "case.length_m=10000", "--set", "case.run.record_every_s=0.1") == 1
     told = capsys.readouterr()
-    for words in ("case.length_m", "case.gradients[2].to_m", "case.run.record_every_s", "case.yaml:"):
+    for words in ("case.length_m", "case.gradients[2].to_m", "case.run.record_every_s", "case.yaml:", "--set"):
         assert words in told.out + told.err
     assert list(working_folder.iterdir()) == []

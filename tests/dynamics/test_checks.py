@@ -204,7 +204,7 @@ def test_the_last_instant_is_a_row_of_its_own(duration_s, rows):
 
 
 def test_steps_longer_than_records_or_the_run():
-    assert told(with_run(step_s=0.02, record_every_s=0.01)) == [("error", "record", "case.run.record_every_s")]
+    assert told(with_run(step_s=0.02, record_every_s=0.01)) == [("error", "record", "case.run.step_s")]
     assert told(with_run(step_s=0.02, record_every_s=0.01, method="variable")) == []
     assert ("error", "step", "case.run.step_s") in told(with_run(duration_s=0.01, step_s=0.02, record_every_s=0.05))
 

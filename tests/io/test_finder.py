@@ -20,7 +20,7 @@ def test_a_folder_and_a_file(places):
     folder = places / "package/lines/e65"
     for study in (folder, folder / "study.yaml", str(folder)):
         found = find_study(study)
-        assert (found.file, found.folder, found.origin) == (folder / "study.yaml", folder, "a path")
+        assert (found.file, found.folder, found.origin) == (folder / "study.yaml", folder, str(study))
 
 
 def test_the_working_folder_comes_before_the_package(places):

@@ -7,21 +7,23 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tractionpower.cli.look import Look
+from tractionpower.cli.messages import has_errors
 from tractionpower.cli.options import set_option
 from tractionpower.cli.study_call import Call
 
 if TYPE_CHECKING:
+    from tractionpower.errors import Problem
     from tractionpower.io.dynamics_files import LoadedCase
 
 CaseName = Annotated[
     str, typer.Argument(metavar="CASE", help="Folder with a case.yaml, such a file, a .ini of Arshad et al., or a shipped case.")
 ]
-ChangesOfCase = Annotated[list[str] | None, set_option(", e.g. case.run.step_s=0.002 or couplings[arshad].slack_mm=20")]
+ChangesOfCase = Annotated[list[str] | None, set_option(", e.g. case.start.speed_kmh=30 or couplings[zobory-linear].slack_mm=20")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,8 +32,20 @@ class CaseCall(Call):
 
     loaded: LoadedCase
 
+    @property
+    def units(self) -> str:
+        """Units that people are told figures in: metric, or imperial."""
+        return self.scenario.case.units if self.kind == "dynamics" else "metric"
 
-def call_case(case: str, changes: Sequence[str], out: Path | None, look: Look, run: Mapping[str, Any] | None = None) -> CaseCall:
+    @property
+    def reports(self) -> str:
+        """What is written beside the tables; a case of stations has figures alone."""
+        return "figures and workbook" if self.kind == "dynamics" else "figures"
+
+
+def call_case(
+    case: str, changes: Sequence[str], out: Path | None, look: Look, run: Mapping[str, float | str | None] | None = None
+) -> CaseCall:
     """Load a case and change it, also keys of its `run`; results go to `out`, or into ``reports/dynamics-<case>``.
 
     Raises
@@ -41,16 +55,30 @@ def call_case(case: str, changes: Sequence[str], out: Path | None, look: Look, r
     UsageError
         If there is no such case.
     """
-    from tractionpower.io.dynamics_files import load_case
-    from tractionpower.model.change import apply_changes
+    from tractionpower.errors import InputError
+    from tractionpower.io.changes import Change, changes_of
+    from tractionpower.io.dynamics_files import read_case
     from tractionpower.model.dynamics.case import DynamicsScenario
 
-    loaded = load_case(case)
-    of_vehicles = isinstance(loaded.scenario, DynamicsScenario)
-    where = "case.run" if of_vehicles else "run"
-    every = [*changes, *(f"{where}.{name}={value}" for name, value in (run or {}).items() if value is not None)]
-    scenario = apply_changes(loaded.scenario, every) if every else loaded.scenario
+    loaded, problems = read_case(case)
+    if loaded is None or has_errors(problems):
+        raise InputError(problems if loaded is None else [*problems, *find_problems(loaded)])
+    given = {name: str(value).removesuffix(".0") for name, value in (run or {}).items() if value is not None}
+    options = [Change(f"case.run.{name}", value, f"--{name.replace('_', '-')}") for name, value in given.items()]
+    every = [*changes_of(changes), *options]
+    loaded = loaded.changed(every) if every else loaded
     look.check_own()
-    kind = "dynamics" if of_vehicles else str(getattr(scenario, "kind", ""))
+    kind = "dynamics" if isinstance(loaded.scenario, DynamicsScenario) else loaded.scenario.kind
     folder = out if out is not None else Path("reports") / f"dynamics-{loaded.name}"
-    return CaseCall(loaded, scenario, loaded.name, folder, kind, look)
+    return CaseCall(loaded, loaded.scenario, loaded.name, folder, kind, look)
+
+
+def find_problems(loaded: LoadedCase) -> list[Problem]:
+    """Return what a case whose files could be read contradicts itself in, each with its file and line."""
+    from tractionpower.dynamics.checks import check_case
+    from tractionpower.dynamics.traindyn.station_checks import check_stations
+    from tractionpower.model.dynamics.case import DynamicsScenario
+
+    scenario = loaded.scenario
+    found = check_case(scenario) if isinstance(scenario, DynamicsScenario) else check_stations(scenario)
+    return loaded.provenance.place(found)

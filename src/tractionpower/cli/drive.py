@@ -64,7 +64,7 @@ def drive(
         tell("nothing was driven, so nothing is written")
         raise typer.Exit(exit_code(flagged=bool(failure), holds=True, strict=False))
     outcome = live.finish(failure)
-    show(outcome.run, outcome.key_figures)
+    show(outcome.run, outcome.key_figures, call.units)
     tell(f"as it was driven: {live.folder}; `tractionpower dynamics run {live.folder}` computes it again")
     call.leave(writer, exit_code(flagged=outcome.flagged, holds=True, strict=False), no_reports=no_reports)
 

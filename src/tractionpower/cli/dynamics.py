@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tractionpower.cli import drive
+from tractionpower.cli import drive, dynamics_check
 from tractionpower.cli.case_call import CaseCall, CaseName, ChangesOfCase, call_case
 from tractionpower.cli.look import look_of
 from tractionpower.cli.messages import tell
@@ -32,6 +32,7 @@ def _of_dynamics() -> None:
 
 
 app.command("drive")(drive.drive)
+app.command("check")(dynamics_check.check)
 
 
 @app.command("run")
@@ -61,7 +62,9 @@ def run(
     if call.kind == "dynamics":
         warn_of_compilation("advance_chain")
     outcome, writer = _compute(call, force=force)
-    _show(outcome)
+    _show(outcome, call.units)
+    if strict and not outcome.run["verdicts"]:
+        tell("--strict: no coupling gives an endurable force, so nothing was judged")
     holds = all(verdict["met"] for verdict in outcome.run["verdicts"])
     call.leave(writer, exit_code(flagged=outcome.flagged, holds=holds, strict=strict), no_reports=no_reports)
 
@@ -93,10 +96,10 @@ def _new_run(call: CaseCall, writer: RunWriter) -> CaseRun | StationsRun:
     return StationsRun(call.scenario, writer, call.name)
 
 
-def _show(outcome: Outcome) -> None:
-    if outcome.run["kind"] == "stations":
-        from tractionpower.cli.stations_summary import show
-    else:
-        from tractionpower.cli.dynamics_summary import show
+def _show(outcome: Outcome, units: str) -> None:
+    from tractionpower.cli import dynamics_summary, stations_summary
 
-    show(outcome.run, outcome.key_figures)
+    if outcome.run["kind"] == "stations":
+        stations_summary.show(outcome.run, outcome.key_figures)
+    else:
+        dynamics_summary.show(outcome.run, outcome.key_figures, units)

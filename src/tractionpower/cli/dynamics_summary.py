@@ -37,8 +37,15 @@ MOST_STOPS = 3
 """Stops that are printed: the last ones."""
 
 
-def show(run: Mapping[str, Any], figures: Sequence[Mapping[str, Any]]) -> None:
-    """Print what a dynamicist asks first."""
+QUANTITIES = {"kN": "force", "km/h": "speed", "m/s²": "acceleration", "m": "distance", "kWh": "energy"}
+"""Quantity of each unit of the key figures, by the names of `reporting.facts.measures`."""
+
+DIGITS = {"": 0, "kN": 1, "km/h": 1, "m/s²": 3, "m": 2, "s": 2, "kWh": 3}
+"""Decimals that tell something, by unit of the key figures: of a number of things none."""
+
+
+def show(run: Mapping[str, Any], figures: Sequence[Mapping[str, Any]], units: str = "metric") -> None:
+    """Print what a dynamicist asks first, in metric or imperial `units`."""
     from tractionpower.cli.console import new_console, new_table
 
     console = new_console()
@@ -47,11 +54,11 @@ def show(run: Mapping[str, Any], figures: Sequence[Mapping[str, Any]]) -> None:
     table.add_column("")
     known = _chosen(figures) if run["kind"] == "dynamics" else figures
     for figure in known:
-        value = f"{figure['value']:z.{_digits(figure)}f}"
+        value, unit = _in_units(figure["value"], figure["unit"], units)
         table.add_row(
             SHOWN.get(figure["name"]) or Quantity(figure["name"], "").words,
-            value,
-            figure["unit"],
+            f"{value:z.{DIGITS.get(figure['unit'], 2)}f}",
+            unit,
             figure["place"],
             f"at {figure['time']}" if figure["time"] else "",
         )
@@ -59,7 +66,9 @@ def show(run: Mapping[str, Any], figures: Sequence[Mapping[str, Any]]) -> None:
     console.print(table)
     console.print()
     for verdict in run["verdicts"]:
-        console.print(sentence(verdict))
+        value, unit = _in_units(verdict["value"], verdict["unit"], units)
+        limit, _ = _in_units(verdict["limit_value"], verdict["unit"], units)
+        console.print(sentence({**verdict, "value": value, "unit": unit, "limit_value": limit}))
     for line in (*_lines(run), *run["notes"]):
         console.print(line)
 
@@ -74,9 +83,12 @@ def _chosen(figures: Sequence[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]
             yield figure
 
 
-def _digits(figure: Mapping[str, Any]) -> int:
-    """Return how many decimals tell something: of a number of things none."""
-    return {"": 0, "kN": 1, "km/h": 1, "m/s²": 3, "m": 2, "s": 2, "kWh": 3}.get(figure["unit"], 2)
+def _in_units(value: float, unit: str, units: str) -> tuple[float, str]:
+    """Return a value of the tables and its unit in the units of the case."""
+    from tractionpower.reporting.facts.measures import measures
+
+    measure = measures(units).get(QUANTITIES.get(unit, ""))
+    return (value, unit) if measure is None else (value * measure.per, measure.unit)
 
 
 def _lines(run: Mapping[str, Any]) -> Iterator[str]:

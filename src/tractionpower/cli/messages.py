@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -28,6 +29,9 @@ NOT_COMPLETED = 3
 LIMIT_VIOLATED = 4
 
 _NO_PLACE = "the study as a whole"
+
+_SENTENCE = re.compile(r"^(there|no|neither|begins|ends)\b|^[^:]* (is|are|has|have|lies|say|both say|all say)\b")
+"""What was found in words that say themselves that something is so, or is not there."""
 
 
 @runtime_checkable
@@ -155,7 +159,7 @@ def _print_problem(console: Console, problem: Problem) -> None:
         text.append(f"{problem.place}: ", "cyan")
     if problem.path:
         text.append(f"{problem.path}: ")
-    text.append(f"found {problem.found}" if problem.allowed else problem.found)
+    text.append(f"found {problem.found}" if problem.allowed and not _SENTENCE.search(problem.found) else problem.found)
     for word, value in (("allowed", problem.allowed), ("remedy", problem.remedy)):
         if value:
             text.append(f"\n      {word}: {value}")

@@ -26,12 +26,12 @@ def check_case(scenario: DynamicsScenario) -> list[Problem]:
     """Return every problem of a case whose files are well formed; an empty list if there is none."""
     train = [*_check_vehicles(scenario)]
     problems = [*train, *_check_track(scenario.case), *_check_commands(scenario.case), *_check_run(scenario.case)]
-    for coupling in scenario.couplings:
-        problems += check_coupling(coupling, f"couplings[{coupling.id}]")
+    couplings = [problem for each in scenario.couplings for problem in check_coupling(each, f"couplings[{each.id}]")]
+    problems += couplings
     if any(problem.severity == "error" for problem in train):
         return problems  # what builds on the train cannot be judged
     problems += [*_check_motion(scenario), *check_controls(scenario)]
-    if any(problem.severity == "error" for problem in problems):
+    if any(problem.severity == "error" for problem in couplings):
         return problems  # nor can the step for couplings that contradict themselves
     return [*problems, *check_step(scenario)]
 
@@ -213,9 +213,8 @@ def _check_run(case: Case) -> Iterator[Problem]:
         found, allowed = f"{run.step_s:g} s", f"at most {run.duration_s:g} s, run.duration_s"
         yield Problem("step", "case.run.step_s", found, allowed, "shorten the step")
     if run.method != "variable" and run.step_s > run.record_every_s * (1.0 + 1e-9):
-        found = f"{run.record_every_s:g} s, and a step of {run.step_s:g} s"
-        remedy = "lengthen record_every_s, or shorten the step"
-        yield Problem("record", "case.run.record_every_s", found, f"at least {run.step_s:g} s, the step", remedy)
+        found, allowed = f"{run.step_s:g} s", f"at most {run.record_every_s:g} s, the distance of recorded rows"
+        yield Problem("record", "case.run.step_s", found, allowed, "shorten the step, or lengthen record_every_s")
     rows = recorded_rows(case)
     if run.rows_limit is not None and rows > run.rows_limit:
         every = fitting_record(case)

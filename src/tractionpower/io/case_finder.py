@@ -30,7 +30,7 @@ class FoundCase:
     name
         Name of its folder, or of its file without the ending where the file is not called ``case.yaml``.
     origin
-        Where it was found, in words.
+        Where it was found: the path as it was given, or in words.
     """
 
     file: Path
@@ -57,7 +57,7 @@ def find_case(case: str | Path) -> FoundCase:
     if not str(case).strip():
         raise UsageError("the name of the case is empty")
     if _exists(path):
-        return _case_at(path, "a path", by_folder=path.is_dir())
+        return _case_at(path, printable(str(path)), by_folder=path.is_dir())
     for folder, origin in _folders():
         if len(path.parts) == 1 and ".." not in path.parts and _exists(folder / path) and _files(folder / path):
             return _case_at(folder / path, origin, by_folder=True)

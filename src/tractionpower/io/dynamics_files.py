@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tractionpower.errors import InputError, Problem
+from tractionpower.io.arshad.own_words import IniProvenance
 from tractionpower.io.arshad.reading import read_arshad
 from tractionpower.io.case_finder import FoundCase, find_case, shipped_cases
+from tractionpower.io.changes import Change, below, changed
 from tractionpower.io.documents import Reader
 from tractionpower.io.problems import Input, in_file_order
 from tractionpower.io.provenance import Mark, Provenance
@@ -22,6 +25,12 @@ __all__ = ["LoadedCase", "find_case", "load_case", "read_case", "shipped_cases"]
 
 KINDS: dict[str, type[Case] | type[StationsCase]] = {"vehicles": Case, "stations": StationsCase}
 """What a case file declares, by its ``kind``. One that is no train as many vehicles stands for itself."""
+
+LEAST = (
+    "docs/dynamics.md has a whole case to start from; the least one is"
+    " {name: A wagon rolls, vehicles: [{id: wagon-zobory}], start: {speed_kmh: 50}, run: {duration_s: 60}}"
+)
+"""What helps where a case file is empty."""
 
 ROOT = "case"
 """Model path of the content of a case file."""
@@ -54,6 +63,19 @@ class LoadedCase:
     problems: tuple[Problem, ...] = ()
     origin: str = ""
 
+    def changed(self, changes: Sequence[Change]) -> LoadedCase:
+        """Return the case with changes by options; what is wrong with them later is told at the option.
+
+        Raises
+        ------
+        InputError
+            With all that is wrong with them now.
+        """
+        root = "" if isinstance(self.scenario, DynamicsScenario) else ROOT
+        scenario = changed(self.scenario, changes, root=root)
+        places = [(below(root, each.path), each.option) for each in changes]
+        return replace(self, scenario=scenario, provenance=self.provenance.overlaid(places))
+
 
 def load_case(case: str | Path) -> LoadedCase:
     """Read the case of train dynamics at a path, or the shipped one of that name.
@@ -66,13 +88,16 @@ def load_case(case: str | Path) -> LoadedCase:
         If there is no such case.
     """
     loaded, problems = read_case(case)
-    if loaded is None:
+    if loaded is None or any(problem.severity == "error" for problem in problems):
         raise InputError(problems)
     return loaded
 
 
 def read_case(case: str | Path) -> tuple[LoadedCase | None, list[Problem]]:
     """Read a case and return it with all problems found; None instead of a case if there are errors.
+
+    A configuration of Arshad et al. that has errors in its keys alone, unknown ones or some twice, comes with its case all the
+    same, so that what else is wrong can be told in the same breath.
 
     Raises
     ------
@@ -83,9 +108,9 @@ def read_case(case: str | Path) -> tuple[LoadedCase | None, list[Problem]]:
     reader = Reader(found.file.parent)
     scenario, root = read_arshad(reader, found) if found.is_ini else _read_yaml(reader, found)
     problems = in_file_order(reader.problems)
-    if scenario is None or reader.has_errors:
+    if scenario is None:
         return None, problems
-    provenance = Provenance(root)
+    provenance = IniProvenance(root) if found.is_ini else Provenance(root)
     return LoadedCase(scenario, provenance, found.file, found.name, tuple(problems), found.origin), problems
 
 
@@ -94,9 +119,13 @@ def _read_yaml(reader: Reader, found: FoundCase) -> tuple[DynamicsScenario | Sta
     root = Mark(source.label)
     # The kind decides what the file declares; the glance's own problems are told by the reading that follows.
     glance = Reader(reader.folder).read(source, Declaration)
-    kind = glance.data.get("kind", "vehicles") if glance is not None else "vehicles"
+    if glance is None:
+        reader.read(source, Case)
+        reader.problems[:] = [_with_pattern(problem) for problem in reader.problems]
+        return None, root
+    kind = glance.data.get("kind", "vehicles")
     if not isinstance(kind, str) or kind not in KINDS:
-        place = glance.mark.find(("kind",)).place if glance is not None else source.label
+        place = glance.mark.find(("kind",)).place
         remedy = did_you_mean(str(kind), KINDS)
         reader.problems.append(Problem("bad_choice", f"{ROOT}.kind", shown(kind), ", ".join(KINDS), remedy, place=place))
         return None, root
@@ -105,8 +134,14 @@ def _read_yaml(reader: Reader, found: FoundCase) -> tuple[DynamicsScenario | Sta
         return None, root
     root.children[ROOT] = content.mark
     if KINDS[kind] is StationsCase:
-        return reader.validated(StationsCase, content), root
+        stations = reader.validated(StationsCase, content)
+        return None if reader.has_errors else stations, root
     return _resolved(reader, found, content, root), root
+
+
+def _with_pattern(problem: Problem) -> Problem:
+    """Return a problem of a case file; that it is empty is told with a case to start from."""
+    return replace(problem, remedy=LEAST) if problem.code == "empty_file" else problem
 
 
 def _resolved(reader: Reader, found: FoundCase, content: Input, root: Mark) -> DynamicsScenario | None:

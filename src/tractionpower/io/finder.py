@@ -85,7 +85,7 @@ def _study_at(path: Path) -> Study:
         shown_path = printable(str(path))
         remedy = "give the folder of a study, a study file or the name of a shipped line"
         raise UsageError(f"the folder {shown_path} has no {STUDY_FILE}; {remedy}; `tractionpower new DIR` starts a study")
-    return Study(file, file.parent, "a path")
+    return Study(file, file.parent, printable(str(path)))
 
 
 def _shipped_folders() -> Iterator[tuple[Path, str]]:

@@ -9,6 +9,7 @@ understood for things with an id as well, but an id wins: ``line.tracks[1]`` is 
 
 from __future__ import annotations
 
+import copy
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -141,6 +142,29 @@ def told_once(problems: Iterable[Problem], *, by_cell: bool = False) -> list[Pro
     return list(kept.values())
 
 
+def _overlay(mark: Mark, tokens: Sequence[str], place: str) -> None:
+    """Let a place below `mark`, and all below it, come from `place`."""
+    for k, token in enumerate(tokens):
+        if token == "*":
+            for child in mark.children.values():
+                _overlay(child, tokens[k + 1 :], place)
+            return
+        found = mark.child(token)
+        if found is None or k == len(tokens) - 1:
+            found = Mark(place if k == len(tokens) - 1 else mark.file, 0 if k == len(tokens) - 1 else mark.line)
+            mark.children[_key_of(mark, token)] = found
+        mark = found
+
+
+def _key_of(mark: Mark, token: str) -> str | int:
+    """Return under which key a mark holds, or would hold, the child that a token names."""
+    if token in mark.children:
+        return token
+    if token in mark.ids:
+        return mark.ids[token]
+    return int(token) if token.isdecimal() and int(token) in mark.children else token
+
+
 class Provenance:
     """The files and lines of one scenario.
 
@@ -156,6 +180,20 @@ class Provenance:
     def locate(self, path: str) -> str:
         """Return ``file:line`` of a model path, or of its nearest ancestor that stands in a file."""
         return self._root.find(split_path(path)).place
+
+    def overlaid(self, places: Iterable[tuple[str, str]]) -> Provenance:
+        """Return a provenance in which model paths, and all below them, come from elsewhere: from an option of a command.
+
+        Parameters
+        ----------
+        places
+            Path, and where it now comes from.
+        """
+        other = copy.copy(self)
+        other._root = copy.deepcopy(self._root)
+        for path, place in places:
+            _overlay(other._root, split_path(path), place)
+        return other
 
     def place(self, problems: Iterable[Problem]) -> list[Problem]:
         """Return `problems` with file and line filled in where they are still empty, each told once."""

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel
 
 from tractionpower.errors import InputError, Problem
+from tractionpower.io.changes import changed, changes_of
 from tractionpower.io.conductor_files import CONDUCTORS
 from tractionpower.io.csv_files import csv_text
 from tractionpower.io.documents import Reader
@@ -27,7 +28,6 @@ from tractionpower.io.stock_finder import FOLDER
 from tractionpower.io.text_files import Source, relative_label, write_files
 from tractionpower.io.yaml_text import document
 from tractionpower.model.base import FORMAT, format_time
-from tractionpower.model.change import apply_changes
 from tractionpower.model.library import Library
 from tractionpower.model.line import Line
 from tractionpower.model.report import Report
@@ -78,15 +78,17 @@ class LoadedScenario:
     file: Path = Path(STUDY_FILE)
     report: Report | None = None
 
-    def changed(self, changes: Iterable[str]) -> Scenario:
+    def changed(self, changes: Iterable[str], option: str = "--set") -> Scenario:
         """Return the scenario with changes by path applied; they may name any row of the library.
+
+        Messages call what asks for them `option`.
 
         Raises
         ------
         InputError
             With all that is wrong with them.
         """
-        return apply_changes(self.scenario, changes, self.library)
+        return changed(self.scenario, changes_of(changes, option), self.library)
 
 
 def load_scenario(study: str | Path) -> LoadedScenario:

@@ -27,6 +27,7 @@ _WORDS = {"null": None, "~": None, "true": True, "false": False}
 _INTEGER = re.compile(r"[-+]?\d+")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _SHOWN = 12
+_MOST_MEANT = 2
 
 Changed = TypeVar("Changed", bound=Declaration)
 
@@ -68,7 +69,22 @@ def apply_changes(scenario: Changed, changes: Iterable[str], library: Library | 
     InputError
         With all wrong paths, or else with all complaints of the model.
     """
-    plain = _thaw(scenario.model_dump(by_alias=True, mode="python"))
+    plain = changed_data(scenario, changes, library)
+    try:
+        return type(scenario).model_validate(plain)
+    except ValidationError as error:
+        raise InputError(_complaints(plain, error)) from error
+
+
+def changed_data(scenario: Declaration, changes: Iterable[str], library: Library | None = None) -> dict[str, Any]:
+    """Return `scenario` as plain data with all `changes` applied, not validated; see `apply_changes`.
+
+    Raises
+    ------
+    InputError
+        With all wrong paths.
+    """
+    plain: dict[str, Any] = _thaw(scenario.model_dump(by_alias=True, mode="python"))
     problems: list[Problem] = []
     for change in changes:
         try:
@@ -79,10 +95,7 @@ def apply_changes(scenario: Changed, changes: Iterable[str], library: Library | 
         raise InputError(problems)
     if library is not None:
         _add_rows(plain, library)
-    try:
-        return type(scenario).model_validate(plain)
-    except ValidationError as error:
-        raise InputError(_complaints(plain, error)) from error
+    return plain
 
 
 def _add_rows(plain: dict[str, Any], library: Library) -> None:
@@ -227,7 +240,7 @@ def _key(container: Any, step: str, path: str, done: str) -> Any:
         raise _refusal("unknown_path", path, f"{done} is a single value and has no part {step!r}", remedy=f"set {done} itself")
     found = keys.get(step) or (_by_index(container, keys, step) if isinstance(container, list) else [])
     if not found:
-        raise _unknown(path, done or "the scenario", step, list(keys))
+        raise _unknown(path, done, step, container)
     if len(found) > 1:
         raise _refusal(
             "ambiguous_path", path, f"{done} has {len(found)} items with id {step!r}", remedy="name it by its index, from 0"
@@ -250,12 +263,44 @@ def _by_index(items: list[Any], keys: dict[str, list[int]], step: str) -> list[i
     return [int(step)] if is_index and int(step) < len(items) else []
 
 
-def _unknown(path: str, owner: str, step: str, names: list[str]) -> InputError:
+def _unknown(path: str, done: str, step: str, container: Any) -> InputError:
+    names = [str(key) for key in container] if isinstance(container, dict) else list(_item_keys(container))
     shown = ", ".join(names[:_SHOWN]) + (f", ... ({len(names)} in all)" if len(names) > _SHOWN else "")
     folded = {name.lower(): name for name in names}
     nearest = difflib.get_close_matches(step.lower(), folded, n=1, cutoff=0.5)
     remedy = f"did you mean {folded[nearest[0]]!r}?" if nearest else ""
-    return _refusal("unknown_path", path, f"no {step!r} in {owner}", shown or "nothing, it is empty", remedy)
+    deeper = _paths_that_end(container, path.removeprefix(done).removeprefix("."), done)
+    if deeper:  # what was written is right, but its beginning is missing
+        remedy = f"did you mean {' or '.join(deeper)}?"
+    return _refusal("unknown_path", path, f"no {step!r} in {done or 'the scenario'}", shown or "nothing, it is empty", remedy)
+
+
+def _paths_that_end(container: Any, end: str, done: str) -> list[str]:
+    """Return the first paths below `container`, which the path `done` has led to, that end like `end`."""
+    steps = [step for step, _ in _steps(end)]
+    found: list[str] = []
+    waiting = [(container, done)]
+    while waiting and len(found) < _MOST_MEANT:
+        here, path = waiting.pop(0)  # what lies higher comes first
+        if isinstance(here, dict):
+            waiting += [(value, f"{path}.{key}" if path else str(key)) for key, value in here.items()]
+        elif isinstance(here, list):
+            waiting += [(here[k], f"{path}[{name}]") for name, (k, *more) in _item_keys(here).items() if not more]
+        if path != done and isinstance(here, dict) and _leads(here, steps):
+            found.append(f"{path}{'' if end.startswith('[') else '.'}{end}")
+    return found
+
+
+def _leads(container: Any, steps: Sequence[str]) -> bool:
+    """Return whether all `steps`, one after the other, exist from `container` on."""
+    for step in steps:
+        if isinstance(container, dict) and step in container:
+            container = container[step]
+        elif isinstance(container, list) and len(_item_keys(container).get(step, ())) == 1:
+            container = container[_item_keys(container)[step][0]]
+        else:
+            return False
+    return True
 
 
 def _refusal(code: str, path: str, found: str, allowed: str = "", remedy: str = "") -> InputError:

@@ -41,5 +41,5 @@ class Outcome:
 
     @property
     def flagged(self) -> bool:
-        """Whether it was not computed to its end, a step of it did not converge or could not be served, or a ledger does not close."""
+        """Whether it did not reach its end, a step did not converge or could not be served, or a ledger does not close."""
         return bool(self.run["status"] != "complete")

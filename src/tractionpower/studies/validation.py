@@ -111,7 +111,7 @@ def run_case(folder: Path) -> Iterator[Finding]:
     case = read_document(folder / CASE_FILE, Case)
     base = load_scenario(folder)
     for check in case.checks:
-        scenario = base.changed(check.set)
+        scenario = base.changed(check.set, f"{CASE_FILE} set")
         for form in check.passes:
             yield from _find(folder, case, check, form, scenario)
 

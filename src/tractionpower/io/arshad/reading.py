@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path, PureWindowsPath
 from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
+from tractionpower.errors import Problem
 from tractionpower.io.arshad.commands import read_commands
 from tractionpower.io.arshad.consist import Consist, read_consist
 from tractionpower.io.arshad.conversion import COUPLING, air_mark, brake_data, coupling_data, run_data
-from tractionpower.io.arshad.settings import Settings, read_settings, spelling_of
+from tractionpower.io.arshad.settings import OF_KEYS, Settings, read_settings, spelling_of
 from tractionpower.io.arshad.track import Profile, read_track, track_data
 from tractionpower.io.case_finder import FoundCase
 from tractionpower.io.documents import Reader
@@ -36,7 +38,8 @@ def read_arshad(reader: Reader, found: FoundCase) -> tuple[DynamicsScenario | No
     settings = read_settings(reader, Source(found.file, found.file.name, ""))
     if settings is None:
         return None, root
-    settings_failed = reader.has_errors
+    of_keys = [problem for problem in reader.problems if problem.code in OF_KEYS]  # the case is whole all the same
+    settings_failed = _has_failed(reader, of_keys)
     consist = read_consist(reader, _named(reader, settings, found.file, "consist"), settings)
     profile = read_track(reader, _named(reader, settings, found.file, "track"))
     source = _named(reader, settings, found.file, "commands")
@@ -46,7 +49,7 @@ def read_arshad(reader: Reader, found: FoundCase) -> tuple[DynamicsScenario | No
     case, case_mark = _case_data(reader, settings, found, consist, profile)
     case["commands"], case_mark.children["commands"] = commands, mark
     coupling, coupling_mark = coupling_data(settings, reader.problems)
-    if consist is None or profile is None or reader.has_errors:
+    if consist is None or profile is None or _has_failed(reader, of_keys):
         return None, root
     _check_cars(reader, settings, consist, case)
     names = [vehicle["id"] for vehicle in consist.vehicles]
@@ -62,10 +65,15 @@ def read_arshad(reader: Reader, found: FoundCase) -> tuple[DynamicsScenario | No
         for k, (name, vehicle) in enumerate(zip(names, consist.vehicles, strict=True))
     ]
     connection = _validated(reader, Coupling, f"couplings[{COUPLING}]", coupling, coupling_mark, found.file)
-    if declared is None or connection is None or reader.has_errors:
+    if declared is None or connection is None or _has_failed(reader, of_keys):
         return None, root
     known = tuple(vehicle for vehicle in vehicles if vehicle is not None)
     return DynamicsScenario(case=declared, vehicles=known, couplings=(connection,)), root
+
+
+def _has_failed(reader: Reader, aside: Sequence[Problem]) -> bool:
+    """Return whether there is an error other than those `aside`."""
+    return any(problem.severity == "error" and problem not in aside for problem in reader.problems)
 
 
 def _case_data(

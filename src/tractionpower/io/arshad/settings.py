@@ -17,6 +17,9 @@ from tractionpower.io.wording import did_you_mean, shown
 
 LIMIT_MB = 1
 
+OF_KEYS = ("unknown_key", "duplicate_key")
+"""Codes of errors that leave every key with a value: its own, or its default."""
+
 _COMMENT = re.compile(r"(?:^|\s)[#;].*")
 _SECTION = re.compile(r"\[[^\]]*\]")
 _BY_SPELLING = {" ".join(spelling.lower().split()): key for key in KEYS for spelling in key.spellings}
