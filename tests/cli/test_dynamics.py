@@ -238,6 +238,47 @@ def test_strict_counts_what_a_coupling_endures(case, capsys):
     assert run(case, "--set", "couplings[zobory-linear].endurable_tension_kn=900", "--strict") == 0
 
 
+def test_strict_says_when_nothing_could_be_judged(case, capsys):
+    assert run(case, "--strict") == 0
+    assert "nothing was judged" in capsys.readouterr().err
+    assert run(case, "--strict", "--set", "couplings[zobory-linear].endurable_tension_kn=900") == 0
+    assert "nothing was judged" not in capsys.readouterr().err
+
+
+# --- what is said
+
+
+def test_a_step_by_option_is_blamed_for_all_that_it_breaks(case, capsys):
+    assert run(case, "--step-s", "0.5") == 1
+    told = capsys.readouterr().err
+    assert re.findall(r"^  error: (.*?): found (.*)$", told, re.MULTILINE) == 2 * [("--step-s: case.run.step_s", "0.5 s")]
+    assert "distance of recorded rows" in told and "with method symplectic" in told
+    assert "case.yaml" not in told
+
+
+def test_the_greeting_says_where_the_case_is(case, capsys):
+    assert run(case) == 0
+    assert "A short start: short\n" in capsys.readouterr().err
+
+
+def test_the_summary_is_in_the_units_of_the_case(case, capsys):
+    limit = ["--set", "couplings[zobory-linear].endurable_tension_kn=444.82216152605"]
+    assert run(case, *limit, "--set", "case.units=imperial") == 0
+    told = capsys.readouterr().out
+    results = Results.open("reports/dynamics-short")
+    lines = {line.split("  ")[0]: line for line in told.splitlines()}
+    for name, words, unit, per in (
+        ("greatest_tension_kn", "greatest tension", "kip", 1.0 / 4.4482216152605),
+        ("greatest_speed_kmh", "greatest speed", "mph", 1.0 / 1.609344),
+        ("stopping_distance_m", "stopping distance", "ft", 1.0 / 0.3048),
+    ):
+        value, shown = lines[words].split()[len(words.split()) :][:2]
+        assert shown == unit
+        assert float(value) == pytest.approx(results.key_figure(name) * per, abs=0.06)
+    assert "(endurable 100 kip" in told or "100 kip, source status" in told
+    assert not re.search(r"\b(kN|km/h|m/s²)", told)
+
+
 # --- reports, other kinds, missing packages
 
 
@@ -260,6 +301,8 @@ def test_without_rainflow_it_says_so(case, monkeypatch, capsys):
 def test_a_case_of_stations_runs_by_the_same_command(tmp_path, capsys):
     pytest.importorskip("simpy")
     assert main(["dynamics", "run", "traindyn-three-stations"]) == 0
+    told = capsys.readouterr()
+    assert "writing figures\n" in told.err
     folder = tmp_path / "reports" / "dynamics-traindyn-three-stations"
     results = Results.open(folder)
     assert results.run["kind"] == "stations"
@@ -267,7 +310,7 @@ def test_a_case_of_stations_runs_by_the_same_command(tmp_path, capsys):
     assert results.scenario.name == results.run["name"]
     assert {path.name for path in (folder / "figures").iterdir()} >= {"station_topology.png", "station_distance_time.png"}
     assert not (folder / "report.xlsx").exists()
-    assert "trains that have left" in capsys.readouterr().out
+    assert "trains that have left" in told.out
     assert main(["report", str(folder), "--only", "figures"]) == 0
 
 

@@ -311,3 +311,22 @@ def test_what_is_added_obeys_the_model(scenario):
         apply_change(scenario, 'supply.feeders[+]={"at": "A", "track": "1", "side": "top"}')
     with pytest.raises(InputError, match=r"no '\+' in supply.feeders"):
         apply_change(scenario, "supply.feeders[+].state=open")
+
+
+# --- paths whose beginning is missing
+
+
+@pytest.mark.parametrize(
+    ("change", "meant"),
+    [
+        ("substations[A].km=1", "supply.substations[A].km"),
+        ("internal_resistance_ohm=1", "supply.substations[A].internal_resistance_ohm"),
+        ("supply.internal_resistance_ohm=1", "supply.substations[A].internal_resistance_ohm"),
+        ("step_s=1", "clock.step_s"),
+    ],
+)
+def test_a_path_without_its_beginning_is_told_with_it(scenario, change, meant):
+    remedy = refused(scenario, change).remedy
+    assert meant in remedy
+    path = remedy.removeprefix("did you mean ").removesuffix("?").split(" or ")[0]
+    assert apply_change(scenario, f"{path}={change.split('=')[1]}") is not None

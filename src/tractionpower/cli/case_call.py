@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 CaseName = Annotated[
     str, typer.Argument(metavar="CASE", help="Folder with a case.yaml, such a file, a .ini of Arshad et al., or a shipped case.")
 ]
-ChangesOfCase = Annotated[list[str] | None, set_option(", e.g. case.start.speed_kmh=30 or couplings[zobory-linear].slack_mm=20")]
+ChangesOfCase = Annotated[list[str] | None, set_option(", e.g. case.start.speed_kmh=30 or vehicles[v43].mass_t=82")]
 
 
 @dataclass(frozen=True, slots=True)
