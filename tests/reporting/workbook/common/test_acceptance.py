@@ -6,7 +6,7 @@ from read_workbook import read_table
 
 from tractionpower.model.report import Report
 from tractionpower.reporting.workbook.common import acceptance
-from tractionpower.reporting.workbook.common.acceptance import Accepted, accepted_rows, cell_names
+from tractionpower.reporting.workbook.common.accepted import Accepted, accepted_rows, cell_names
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula

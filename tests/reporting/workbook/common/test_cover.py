@@ -8,7 +8,7 @@ from read_workbook import texts
 
 from tractionpower.model.report import Document, Report
 from tractionpower.reporting.workbook import write_workbook
-from tractionpower.reporting.workbook.common.acceptance import Accepted, digits_of, place_in_words
+from tractionpower.reporting.workbook.common.accepted import Accepted, digits_of, place_in_words
 from tractionpower.reporting.workbook.common.cover_verdicts import MOST_LINES
 
 GREEN, RED, AMBER = "C6EFCE", "FFC7CE", "FFEB9C"

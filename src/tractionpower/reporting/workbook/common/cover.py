@@ -19,7 +19,7 @@ from openpyxl.utils.units import pixels_to_EMU
 from openpyxl.worksheet.hyperlink import Hyperlink
 
 from tractionpower.reporting.texts import mark, tr
-from tractionpower.reporting.workbook.common.acceptance import accepted_rows
+from tractionpower.reporting.workbook.common.accepted import accepted_rows
 from tractionpower.reporting.workbook.common.cover_texts import (
     MOST_NOTES,
     Said,

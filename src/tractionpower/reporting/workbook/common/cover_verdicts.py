@@ -12,12 +12,12 @@ from openpyxl.formatting.rule import FormulaRule
 from openpyxl.styles import Alignment
 
 from tractionpower.reporting.texts import mark, recorded, tr, trn
-from tractionpower.reporting.workbook.common.acceptance import (
+from tractionpower.reporting.workbook.common.acceptance import colour_words
+from tractionpower.reporting.workbook.common.accepted import (
     MET,
     OPEN,
     VIOLATED,
     Accepted,
-    colour_words,
     digits_of,
     number_in,
     place_in_words,

@@ -11,7 +11,7 @@ from openpyxl.utils import get_column_letter
 
 from tractionpower.model.dynamics.coupling import Coupling
 from tractionpower.reporting.texts import mark, tr
-from tractionpower.reporting.workbook.common.acceptance import accepted_of, cell_names
+from tractionpower.reporting.workbook.common.accepted import accepted_of, cell_names
 from tractionpower.reporting.workbook.common.verdicts import same_as
 from tractionpower.reporting.workbook.dynamics.chain_charts import Drawn
 from tractionpower.reporting.workbook.dynamics.chain_facts import SIDES, ChainFacts, facts_of

@@ -10,7 +10,7 @@ from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
 from tractionpower.reporting.figures.delays.delay_styles import cause_in_words
 from tractionpower.reporting.texts import mark, number, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import Accepted
+from tractionpower.reporting.workbook.common.accepted import Accepted
 from tractionpower.reporting.workbook.feasibility.sentences import live, sentence
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL, fill

@@ -17,7 +17,7 @@ from tractionpower.reporting.workbook.frame.page import Page
 from tractionpower.reporting.workbook.frame.rules import Rule
 
 if TYPE_CHECKING:
-    from tractionpower.reporting.workbook.common.acceptance import Accepted
+    from tractionpower.reporting.workbook.common.accepted import Accepted
 
 TITLE_LENGTH = 200
 """Characters of the title in the properties of the document."""

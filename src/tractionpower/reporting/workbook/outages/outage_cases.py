@@ -9,7 +9,7 @@ from typing import Any
 from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.facts.outages import COMPUTED, Outages
 from tractionpower.reporting.texts import mark, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import OPEN, Accepted
+from tractionpower.reporting.workbook.common.accepted import OPEN, Accepted
 from tractionpower.reporting.workbook.common.verdicts import ROUNDING
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula

@@ -11,7 +11,7 @@ from openpyxl.formatting.rule import CellIsRule
 from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.facts.outages import COMPUTED, Outages
 from tractionpower.reporting.texts import mark, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import LEAST_TOLERANCE
+from tractionpower.reporting.workbook.common.accepted import LEAST_TOLERANCE
 from tractionpower.reporting.workbook.common.verdicts import ROUNDING, beyond
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL, fill

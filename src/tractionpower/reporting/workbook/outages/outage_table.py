@@ -9,7 +9,7 @@ from typing import Any
 
 from tractionpower.reporting.facts.outages import COMPUTED, KINDS_WORDS, Outages
 from tractionpower.reporting.texts import mark, tr
-from tractionpower.reporting.workbook.common.acceptance import OPEN
+from tractionpower.reporting.workbook.common.accepted import OPEN
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL
 from tractionpower.reporting.workbook.frame.formulas import Formula

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from tractionpower.reporting.workbook.common.acceptance import accepted_of
+from tractionpower.reporting.workbook.common.accepted import accepted_of
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 

@@ -10,7 +10,8 @@ import pandas as pd
 from tractionpower.model.base import parse_time
 from tractionpower.reporting.facts.places import told
 from tractionpower.reporting.texts import mark, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import BY_LIMIT, OPEN, colour_words, verdict_word
+from tractionpower.reporting.workbook.common.acceptance import colour_words
+from tractionpower.reporting.workbook.common.accepted import BY_LIMIT, OPEN, verdict_word
 from tractionpower.reporting.workbook.common.verdicts import Comparison, same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts

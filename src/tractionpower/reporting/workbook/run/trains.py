@@ -12,7 +12,7 @@ from tractionpower.model.vehicle import Part
 from tractionpower.movement.compile import train_of
 from tractionpower.movement.formation import form
 from tractionpower.reporting.texts import recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import tolerance_name
+from tractionpower.reporting.workbook.common.accepted import tolerance_name
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL
 from tractionpower.reporting.workbook.frame.facts import STATES, Facts

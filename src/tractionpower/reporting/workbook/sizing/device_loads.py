@@ -15,7 +15,7 @@ from tractionpower.model.base import format_time
 from tractionpower.reporting.facts.device_words import device_told, supply_points_along_line, zones_along_line
 from tractionpower.reporting.figures.base.labels import CLOCK_STEPS_S
 from tractionpower.reporting.texts import mark, tr
-from tractionpower.reporting.workbook.common.acceptance import Accepted
+from tractionpower.reporting.workbook.common.accepted import Accepted
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import RED_FILL, fill
 from tractionpower.reporting.workbook.frame.formulas import Formula

@@ -11,7 +11,7 @@ from openpyxl.formatting.rule import CellIsRule, FormulaRule
 
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.texts import mark, tr
-from tractionpower.reporting.workbook.common.acceptance import LEAST_TOLERANCE, OPEN, tolerance_name
+from tractionpower.reporting.workbook.common.accepted import LEAST_TOLERANCE, OPEN, tolerance_name
 from tractionpower.reporting.workbook.common.verdicts import Comparison, Words, beyond, same_as
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, PLAIN_FILL, RED_FILL, fill
 from tractionpower.reporting.workbook.frame.formulas import Formula

@@ -12,7 +12,7 @@ from openpyxl.utils import absolute_coordinate
 from tractionpower.model.base import format_time
 from tractionpower.reporting.facts.device_words import KINDS, device_told
 from tractionpower.reporting.texts import mark, number, tr
-from tractionpower.reporting.workbook.common.acceptance import Accepted
+from tractionpower.reporting.workbook.common.accepted import Accepted
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column, Page

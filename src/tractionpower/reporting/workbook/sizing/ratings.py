@@ -13,7 +13,7 @@ from tractionpower.model.ratings import DutyRow
 from tractionpower.reporting.facts.device_words import KINDS, device_told, kind_order
 from tractionpower.reporting.figures.supply.ratings_figures import TIGHT_PERCENT
 from tractionpower.reporting.texts import mark, number, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import OPEN, Accepted
+from tractionpower.reporting.workbook.common.accepted import OPEN, Accepted
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula

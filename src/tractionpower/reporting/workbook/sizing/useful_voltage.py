@@ -11,7 +11,7 @@ import pandas as pd
 from tractionpower.model.base import format_time
 from tractionpower.model.limits import USEFUL_NAMES, Limit
 from tractionpower.reporting.texts import mark, number, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import OPEN, Accepted
+from tractionpower.reporting.workbook.common.accepted import OPEN, Accepted
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS, Facts
 from tractionpower.reporting.workbook.frame.formulas import Formula

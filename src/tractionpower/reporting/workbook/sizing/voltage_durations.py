@@ -10,7 +10,7 @@ import pandas as pd
 
 from tractionpower.model.base import format_time
 from tractionpower.reporting.texts import mark, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import Accepted
+from tractionpower.reporting.workbook.common.accepted import Accepted
 from tractionpower.reporting.workbook.common.verdicts import Comparison, same_as
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.facts import Facts

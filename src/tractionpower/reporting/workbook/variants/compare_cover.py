@@ -13,7 +13,7 @@ from openpyxl.formatting.rule import FormulaRule
 
 from tractionpower.reporting.facts.input_words import input_in_words, part_of, value_in_words
 from tractionpower.reporting.texts import mark, recorded, tr, trn
-from tractionpower.reporting.workbook.common.acceptance import MET, VIOLATED
+from tractionpower.reporting.workbook.common.accepted import MET, VIOLATED
 from tractionpower.reporting.workbook.common.cover import Said
 from tractionpower.reporting.workbook.feasibility.sentences import live
 from tractionpower.reporting.workbook.frame.book import Book

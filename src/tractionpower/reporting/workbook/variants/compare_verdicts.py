@@ -9,7 +9,8 @@ from typing import Any
 
 from tractionpower.model.limits import Limit, common_limits
 from tractionpower.reporting.texts import recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import (
+from tractionpower.reporting.workbook.common.acceptance import colour_words
+from tractionpower.reporting.workbook.common.accepted import (
     BY_LIMIT,
     MET,
     OPEN,
@@ -17,7 +18,6 @@ from tractionpower.reporting.workbook.common.acceptance import (
     Accepted,
     accepted_rows,
     cell_names,
-    colour_words,
     tolerance_name,
 )
 from tractionpower.reporting.workbook.common.verdicts import Comparison, same_as

@@ -12,7 +12,7 @@ from openpyxl.formatting.rule import ColorScaleRule
 
 from tractionpower.reporting.facts.sweep_data import SweepData
 from tractionpower.reporting.texts import tr
-from tractionpower.reporting.workbook.common.acceptance import LEAST_TOLERANCE, MET, VIOLATED, tolerance_name
+from tractionpower.reporting.workbook.common.accepted import LEAST_TOLERANCE, MET, VIOLATED, tolerance_name
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.cells import AMBER_FILL, GREEN_FILL, RED_FILL
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page

@@ -12,7 +12,8 @@ from tractionpower.reporting.facts.device_words import device_told
 from tractionpower.reporting.facts.input_words import value_in_words
 from tractionpower.reporting.facts.sweep_data import SweepData
 from tractionpower.reporting.texts import mark, recorded, tr
-from tractionpower.reporting.workbook.common.acceptance import BY_LIMIT, MET, OPEN, VIOLATED, Accepted, colour_words
+from tractionpower.reporting.workbook.common.acceptance import colour_words
+from tractionpower.reporting.workbook.common.accepted import BY_LIMIT, MET, OPEN, VIOLATED, Accepted
 from tractionpower.reporting.workbook.common.verdicts import Comparison
 from tractionpower.reporting.workbook.frame.book import Book
 from tractionpower.reporting.workbook.frame.formulas import Formula
