@@ -11,9 +11,14 @@ from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
+from tractionpower.reporting.facts.characters import unturned
+from tractionpower.reporting.figures.base.labels import shortened
 from tractionpower.reporting.texts import language, tr
 from tractionpower.results.disk import reason_of
 from tractionpower.results.results import Results
+
+MOST_NAME_LETTERS = 80
+"""Letters of the name of a case at the foot of a figure."""
 
 FIGURES = "figures"
 WORKBOOK = "report.xlsx"
@@ -53,7 +58,7 @@ def write_reports(
             hindrances += hindrance
         except OSError as error:
             hindrances.append(f"figures cannot be written into {folder / FIGURES}: {reason_of(error)}")
-    if "workbook" in parts and not isinstance(scenario, StationsCase):  # a case of stations has figures alone
+    if "workbook" in parts:
         from tractionpower.reporting.workbook import write_workbook
 
         workbook = folder / WORKBOOKS.get(kind, WORKBOOK)
@@ -86,11 +91,16 @@ def _write_figures(
 
 
 def source_of(results: Results) -> str:
-    """Return the line at the foot of each figure: study, inputs by the beginning of their hash, program; no date."""
+    """Return the line at the foot of each figure: study, inputs by the beginning of their hash, program; no date.
+
+    Figures of train dynamics have the name of their case there, which would take two lines of a title.
+    """
     run = results.run
     version = str(run.get("versions", {}).get("tractionpower", ""))
+    is_case = run.get("kind") in ("dynamics", "stations") and run.get("name")
+    study = unturned(shortened(" ".join(str(run["name"]).split()), MOST_NAME_LETTERS)) if is_case else ""
     parts = [
-        tr("study {study}", study=str(run["study"])[:60]) if run.get("study") else "",
+        study or (tr("study {study}", study=str(run["study"])[:60]) if run.get("study") else ""),
         tr("inputs {hash}", hash=str(run["input_hash"])[:12]) if run.get("input_hash") else "",
         f"tractionpower {version}" if version else "",
     ]

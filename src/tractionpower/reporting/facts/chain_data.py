@@ -16,9 +16,6 @@ from tractionpower.results.results import Results
 
 Array = NDArray[np.float64]
 
-MOST_TITLE_LETTERS = 120
-"""Letters of the name of a case above a figure."""
-
 ENDURABLE = {"tension": "endurable_tension_kn", "compression": "endurable_compression_kn"}
 """Fields of a coupling with the forces that it endures."""
 
@@ -36,12 +33,6 @@ class ChainData:
         self.results, self.scenario = results, scenario
         self._frames: dict[str, pd.DataFrame] = {}
         self._places: dict[str, tuple[Array, list[str], NDArray[np.intp], NDArray[np.intp]]] = {}
-
-    @property
-    def title(self) -> str:
-        """Name of the case, cut where it is too long for a title."""
-        name = self.scenario.name or str(self.results.run.get("study", ""))
-        return name if len(name) <= MOST_TITLE_LETTERS else f"{name[: MOST_TITLE_LETTERS - 1].rstrip()}…"
 
     @property
     def units(self) -> dict[str, Measure]:

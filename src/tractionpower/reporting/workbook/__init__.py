@@ -6,13 +6,16 @@ from __future__ import annotations
 from pathlib import Path
 
 from tractionpower.model.dynamics.case import DynamicsScenario
+from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.model.report import Report
 from tractionpower.model.scenario import Scenario
 from tractionpower.reporting.texts import language
 from tractionpower.results.results import Results
 
 
-def write_workbook(results: Results, scenario: Scenario | DynamicsScenario, path: Path, report: Report | None = None) -> Path:
+def write_workbook(
+    results: Results, scenario: Scenario | DynamicsScenario | StationsCase, path: Path, report: Report | None = None
+) -> Path:
     """Write the workbook of a run, of a study of many or of train dynamics, and return where it is.
 
     The file gets its name when it is complete. Where another program holds the earlier one open, the new one stands
@@ -33,6 +36,7 @@ def write_workbook(results: Results, scenario: Scenario | DynamicsScenario, path
     from tractionpower.reporting.workbook.frame.saving import save_as
     from tractionpower.reporting.workbook.outages import outage_book
     from tractionpower.reporting.workbook.run import book
+    from tractionpower.reporting.workbook.stations import book as stations_book
     from tractionpower.reporting.workbook.variants import compare, sweep
 
     report = report or Report()
@@ -41,4 +45,6 @@ def write_workbook(results: Results, scenario: Scenario | DynamicsScenario, path
     with language(report.language):
         if isinstance(scenario, DynamicsScenario):
             return save_as(dynamics_book.build(results, scenario, report), path)
+        if isinstance(scenario, StationsCase):
+            return save_as(stations_book.build(results, scenario, report), path)
         return save_as(build(results, scenario, report), path)

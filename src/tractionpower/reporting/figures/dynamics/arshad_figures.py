@@ -34,7 +34,11 @@ from tractionpower.reporting.texts import tr
 Array = NDArray[Any]
 
 LOOP = 2
-"""Number of the coupling of their figure 9, from 0: between the third and the fourth car."""
+"""Number of the coupling of their figure 9, from 0.
+
+It joins "the 3rd and the 4th car". The locomotive is counted here as the first one, as the model of the paper is a chain of N
+cars that begins with it: what is drawn is the coupling behind the second of the cars that are hauled.
+"""
 
 MOST_CARS = 6
 
@@ -76,7 +80,7 @@ def cylinder_pressure(data: ChainData) -> Figure | None:
 
 
 def coupler(data: ChainData) -> Figure | None:
-    """Draw force over displacement of the coupler between the third and the fourth car, signs changed (figure 9)."""
+    """Draw force over displacement of the coupler between the third and the fourth vehicle, signs changed (figure 9)."""
     if not data.has("couplings"):
         return None
     number_of = min(LOOP, len(data.couplings) - 1)
@@ -88,7 +92,8 @@ def coupler(data: ChainData) -> Figure | None:
             axes.set_xlabel(label(data, "deflection", tr("displacement, the sign of\ncompression changed")))
             axes.set_ylim(0.0, None)
         whole, near = panels
-        whole.set_xlim(min(0.0, whole.get_xlim()[0]), None)
+        if np.ptp(whole.get_xlim()) > 0.0:
+            whole.set_xlim(min(0.0, whole.get_xlim()[0]), None)
         mark_slack(whole, data, number_of)
         whole.set_title(tr("with the slack"), fontsize=8.0)
         low, high = near.get_xlim()
@@ -99,7 +104,9 @@ def coupler(data: ChainData) -> Figure | None:
         handles, labels = whole.get_legend_handles_labels()
         legend_below(figure, handles, labels, 3)
         told = coupling_told(data.couplings[number_of])
-        return titled(figure, data, tr("force over displacement (Arshad et al., figure 9)"), told)
+        if number_of == LOOP:
+            told = tr("{coupling}: between the third and the fourth vehicle, the locomotive counted as the first", coupling=told)
+        return titled(figure, tr("force over displacement (Arshad et al., figure 9)"), told)
 
 
 def relative_position(data: ChainData) -> Figure | None:
@@ -122,6 +129,9 @@ FIGURES = {
 }
 """The six plots by name."""
 
+TWICE = ("dynamics_speeds", "brake_cylinders", "relative_positions")
+"""Figures of all cases that show what these six do; they are drawn where the template names them."""
+
 
 def _single(data: ChainData, values: Array, axis: tuple[str, str], title: str) -> Figure:
     """Draw one line over time; `axis` is its quantity and its words."""
@@ -130,7 +140,7 @@ def _single(data: ChainData, values: Array, axis: tuple[str, str], title: str) -
         shown = values * data.units[axis[0]].per
         line(axes, data.times, shown, color=BLUE)
         _finish(axes, data, axis, [shown])
-        return titled(figure, data, title)
+        return titled(figure, title)
 
 
 def _cars(data: ChainData, values: Array, shown: Sequence[int], axis: tuple[str, str], title: str) -> Figure:
@@ -144,7 +154,7 @@ def _cars(data: ChainData, values: Array, shown: Sequence[int], axis: tuple[str,
             line(axes, data.times, values[:, number_of] * per, color=colour, linestyle=dashes, label=name)
         _finish(axes, data, axis, [values[:, list(shown)] * per])
         legend_below(figure, *axes.get_legend_handles_labels(), 3)
-        return titled(figure, data, title)
+        return titled(figure, title)
 
 
 def _finish(axes: Axes, data: ChainData, axis: tuple[str, str], values: Sequence[Array]) -> None:

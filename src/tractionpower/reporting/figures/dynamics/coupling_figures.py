@@ -68,7 +68,7 @@ def forces_along_train(data: ChainData) -> Figure | None:
         axes.set_xlabel(tr(TIME))
         time_axis(axes, times)
         _mark_extremes(axes, data)
-        return titled(figure, data, tr("forces in the couplings along the train"), extremes_told(data))
+        return titled(figure, tr("forces in the couplings along the train"), extremes_told(data))
 
 
 def _peaks_in_time(times: Array, values: Array) -> tuple[Array, Array]:
@@ -95,8 +95,8 @@ def _mark_extremes(axes: Axes, data: ChainData) -> None:
 def extremes_told(data: ChainData) -> str:
     """Return the greatest tension and compression of the run in words, with their coupling and time."""
     words = {
-        "tension": tr("greatest tension (▲) {force}, coupling {name}"),
-        "compression": tr("greatest compression (▼) {force}, coupling {name}"),
+        "tension": tr("tension up to {force}, coupling {name} (▲)"),
+        "compression": tr("compression up to {force}, coupling {name} (▼)"),
     }
     told = []
     for side, sentence in words.items():
@@ -135,9 +135,7 @@ def extremes(data: ChainData) -> Figure | None:
         axes.set_xlabel(tr("coupling, from the front of the train"))
         axes.set_ylabel(label(data, "force", tr("force, tension positive")))
         legend_below(figure, *axes.get_legend_handles_labels(), 4)
-        return titled(
-            figure, data, tr("greatest forces of the couplings"), extremes_told(data).replace(" (▲)", "").replace(" (▼)", "")
-        )
+        return titled(figure, tr("greatest forces of the couplings"), extremes_told(data).replace(" (▲)", "").replace(" (▼)", ""))
 
 
 def loops(data: ChainData) -> Figure | None:
@@ -160,7 +158,7 @@ def loops(data: ChainData) -> Figure | None:
         if any(half_slack(data, number_of) > 0.0 for number_of in shown):
             handles, labels = once(panels)
             legend_below(figure, handles, labels, 3)
-        return titled(figure, data, tr("force and deflection of couplings"))
+        return titled(figure, tr("force and deflection of couplings"))
 
 
 def loop_of(axes: Axes, data: ChainData, number_of: int, quantity: str) -> None:
@@ -232,4 +230,4 @@ def first_coupling(data: ChainData) -> Figure | None:
             low=told_value(data, "force", np.nanmin(force) / data.units["force"].per),
             high=told_value(data, "force", np.nanmax(force) / data.units["force"].per),
         )  # fmt: skip
-        return titled(figure, data, tr("force of the first coupling"), told)
+        return titled(figure, tr("force of the first coupling"), told)

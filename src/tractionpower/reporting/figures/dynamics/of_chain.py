@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.reporting.facts.chain_data import ChainData
-from tractionpower.reporting.figures.base.drawing import files_of, remove_files, wanted
+from tractionpower.reporting.figures.base.drawing import current_drawing, files_of, remove_files, wanted
 from tractionpower.reporting.figures.base.style import save_as
 from tractionpower.reporting.figures.dynamics import arshad_figures, coupling_figures, over_time, spread_figures
 from tractionpower.reporting.figures.dynamics.stopping_figure import stopping
@@ -47,7 +47,11 @@ def write_chain_figures(results: Results, scenario: DynamicsScenario, folder: Pa
     Figures that an earlier run left there and this one does not have go; other files stay.
     """
     data = ChainData(results, scenario)
-    draws = SINGLE | (arshad_figures.FIGURES if arshad_figures.is_of_arshad(data) and data.has("vehicles") else {})
+    draws = dict(SINGLE)
+    if arshad_figures.is_of_arshad(data) and data.has("vehicles"):
+        named = current_drawing().names or ()
+        draws = {name: draw for name, draw in SINGLE.items() if name not in arshad_figures.TWICE or name in named}
+        draws |= arshad_figures.FIGURES
     paths = []
     for name, draw in draws.items():
         figure = draw(data) if wanted(name) else None

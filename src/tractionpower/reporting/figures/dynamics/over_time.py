@@ -8,6 +8,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from tractionpower.reporting.facts.chain_data import ChainData
@@ -15,6 +16,7 @@ from tractionpower.reporting.facts.chain_energy import energies_of
 from tractionpower.reporting.figures.base.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, STYLE, VERMILION
 from tractionpower.reporting.figures.dynamics.panels import (
     LINES,
+    NOTHING,
     label,
     line,
     looks,
@@ -94,7 +96,7 @@ def controls(data: ChainData) -> Figure | None:
         told = tr(
             "vehicle {name}: greatest speed {speed}", name=data.vehicles[0], speed=told_value(data, "speed", np.nanmax(speed))
         )
-        return titled(figure, data, tr("controls, speed and acceleration"), told)
+        return titled(figure, tr("controls, speed and acceleration"), told)
 
 
 def _levels(axes: Axes, data: ChainData) -> None:
@@ -107,10 +109,22 @@ def _levels(axes: Axes, data: ChainData) -> None:
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, -1.0), max(high, 1.0))
     zero_line(axes)
+    _name_levels(axes, data.scenario.case.air_brake.levels)
     emergency = brake > data.scenario.case.air_brake.levels
     for k in np.flatnonzero(emergency & ~np.append(False, emergency[:-1])):
         style: Any = {"textcoords": "offset points", "fontsize": 7.0, "color": INK}
         axes.annotate(tr("emergency"), (times[k], -brake[k]), (3, 3), va="bottom", **style)
+
+
+def _name_levels(axes: Axes, levels: int) -> None:
+    """Write levels without the sign that only tells where they are drawn; beyond the last one of the brake is emergency."""
+    low, high = axes.get_ylim()
+    ticks = [float(tick) for tick in MaxNLocator(nbins=5, integer=True).tick_values(low, high)]
+    if low < -levels - 0.5:
+        ticks = [tick for tick in ticks if tick > -0.8 * levels]  # so that no number stands on the word
+        ticks.append(-levels - 1.0)
+    words = {tick: tr("emergency") if tick < -levels - 0.5 else number(abs(tick), 0) for tick in ticks if low <= tick <= high}
+    axes.set_yticks(list(words), list(words.values()))
 
 
 def speeds(data: ChainData) -> Figure | None:
@@ -132,7 +146,7 @@ def speeds(data: ChainData) -> Figure | None:
         time_axis(panels[-1], data.times)
         figure.align_ylabels(panels)
         legend_below(figure, *panels[0].get_legend_handles_labels(), 3)
-        return titled(figure, data, tr("speeds of vehicles"))
+        return titled(figure, tr("speeds of vehicles"))
 
 
 def cylinders(data: ChainData) -> Figure | None:
@@ -162,10 +176,10 @@ def cylinders(data: ChainData) -> Figure | None:
             )
             highest = max(highest, pipe.max())
         axes.set_ylabel(label(data, "pressure", tr("pressure, gauge")))
-        axes.set_ylim(0.0, 1.08 * highest)
+        axes.set_ylim(0.0, 1.08 * max(highest, NOTHING))
         time_axis(axes, data.times)
         legend_below(figure, *axes.get_legend_handles_labels(), 2)
-        return titled(figure, data, tr("pressures of brake cylinders"))
+        return titled(figure, tr("pressures of brake cylinders"))
 
 
 def efforts(data: ChainData) -> Figure | None:
@@ -197,7 +211,7 @@ def efforts(data: ChainData) -> Figure | None:
         time_axis(panels[-1], data.times)
         figure.align_ylabels(panels)
         legend_below(figure, *once(panels), 3)
-        return titled(figure, data, tr("efforts and resistances of the train"))
+        return titled(figure, tr("efforts and resistances of the train"))
 
 
 def relative_positions(data: ChainData) -> Figure | None:
@@ -218,7 +232,7 @@ def relative_positions(data: ChainData) -> Figure | None:
         axes.set_ylabel(label(data, quantity, tr("change of the place against the first\nvehicle; negative: drawn out")))
         time_axis(axes, data.times)
         legend_below(figure, *axes.get_legend_handles_labels(), 3)
-        return titled(figure, data, tr("relative positions of vehicles"))
+        return titled(figure, tr("relative positions of vehicles"))
 
 
 def energies(data: ChainData) -> Figure | None:
@@ -248,4 +262,4 @@ def energies(data: ChainData) -> Figure | None:
         legend_below(figure, *axes.get_legend_handles_labels(), 2)
         end = {name: number(float(values[-1]), 2) for name, values in found.parts.items()}
         told = tr("at the end: traction {traction} kWh, resistance {resistance} kWh, air brakes {brake} kWh", **end)
-        return titled(figure, data, tr("energies"), told)
+        return titled(figure, tr("energies"), told)

@@ -33,13 +33,15 @@ MOST_LETTERS = 30
 LITTLE = 0.02
 """A part of an axis that is too little for room of its own."""
 
+NOTHING = 1e-9
+"""An axis of less than this has no height."""
+
 TIME = mark("time [s]")
 
 
-def titled(figure: Figure, data: ChainData, words: str, told: str = "") -> Figure:
-    """Write the title of a figure, with a line of what it tells below, and return the figure."""
-    title = tr("{study}: {what}", study=data.title, what=words)
-    head(figure, title)
+def titled(figure: Figure, words: str, told: str = "") -> Figure:
+    """Write the title of a figure, with a line of what it tells below, and return the figure; its foot names the case."""
+    head(figure, f"{words[:1].upper()}{words[1:]}")
     if told:
         figure.suptitle(f"{figure.get_suptitle()}\n{told}", x=0.01, ha="left")
     return figure
@@ -114,5 +116,7 @@ def room(axes: Axes, values: Sequence[Array], share: float = 0.08) -> None:
     every = np.concatenate([np.ravel(each) for each in values])
     every = every[np.isfinite(every)]
     low, high = (min(0.0, float(every.min())), max(0.0, float(every.max()))) if len(every) else (0.0, 1.0)
-    wide = max(high - low, 1e-9)
+    if high - low < NOTHING:
+        low, high = -1.0, 1.0  # of a train that stands
+    wide = high - low
     axes.set_ylim(low - (share * wide if low < -LITTLE * wide else 0.0), high + (share * wide if high > LITTLE * wide else 0.0))

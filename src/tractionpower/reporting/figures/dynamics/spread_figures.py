@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tractionpower.dynamics.statistics import MEAN_N, RANGE_N
 from tractionpower.reporting.facts.chain_data import ChainData
-from tractionpower.reporting.facts.spread import LEAST_SHARE, joint_of, rows_of
+from tractionpower.reporting.facts.spread import histogram_of, joint_of
 from tractionpower.reporting.figures.base.style import BLUE, INK, PAGE, SMALLEST, STYLE, new_figure
 from tractionpower.reporting.figures.dynamics.panels import LINES, coupling_told, label, titled
 from tractionpower.reporting.figures.supply.panels import legend_below
@@ -28,6 +28,9 @@ MOST_NUMBERS = 14
 
 MOST_CELLS = 20
 """Cells of a matrix of cycles in either direction."""
+
+MOST_SMALL = 3
+"""Levels of a joint distribution that is too low for long texts beside it."""
 
 SHADES = "Blues"
 
@@ -53,23 +56,34 @@ def _joint(data: ChainData, which: str, words: str, title: str) -> Figure | None
     joint = joint_of(data, which)
     if joint is None:
         return None
-    levels, classes = joint.share.shape
+    count, classes = joint.share.shape  # levels without any time have no row
     with mpl.rc_context(STYLE | {"axes.grid": False}):
-        figure = new_figure(PAGE, min(1.7 + 0.24 * max(levels, 5), 5.6))
+        figure = new_figure(PAGE, min(1.35 + 0.24 * max(count, 2), 5.6))
         axes = figure.add_subplot()
-        edges = joint.edges * data.units["speed"].per
-        mesh = axes.pcolormesh(edges, np.arange(levels + 1) - 0.5, 100.0 * joint.share, cmap=SHADES, vmin=0.0,
+        mesh = axes.pcolormesh(joint.edges, np.arange(count + 1) - 0.5, 100.0 * joint.share, cmap=SHADES, vmin=0.0,
                                edgecolors="white", linewidth=0.4)  # fmt: skip
         bar = figure.colorbar(mesh, ax=axes, pad=0.015, fraction=0.055)
-        bar.set_label(tr("share of the time [%]"), fontsize=SMALLEST)
+        bar.set_label(tr("share of the time [%]") if count > MOST_SMALL else tr("time [%]"), fontsize=SMALLEST)
         bar.ax.tick_params(labelsize=SMALLEST)
+        bar.ax.yaxis.set_major_locator(MaxNLocator(nbins=min(count + 1, 6)))
         if classes <= MOST_NUMBERS:
-            _write_shares(axes, edges, joint.share)
-        axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-        axes.set_ylim(-0.5, levels - 0.5)
-        axes.set_ylabel(words)
+            _write_shares(axes, joint.edges, joint.share)
+        axes.set_yticks(range(count), [level_told(data, which, level) for level in joint.levels])
+        axes.tick_params(axis="y", labelsize=SMALLEST, length=0.0)
+        axes.set_ylim(-0.5, count - 0.5)
+        axes.set_ylabel(words if count > MOST_SMALL else words.replace(", ", ",\n"))
         axes.set_xlabel(label(data, "speed", tr("speed")))
-        return titled(figure, data, title)
+        return titled(figure, title, counted_told(of_rows=joint.of_rows))
+
+
+def level_told(data: ChainData, which: str, level: int) -> str:
+    """Return what a level of a control is called: that beyond the last one of the brake is emergency."""
+    return tr("emergency") if which == "brake_speed" and level > data.scenario.case.air_brake.levels else str(level)
+
+
+def counted_told(*, of_rows: bool) -> str:
+    """Return what a distribution was counted from."""
+    return tr("counted from the recorded rows") if of_rows else tr("counted in every step")
 
 
 def _write_shares(axes: Axes, edges: Array, share: Array) -> None:
@@ -96,27 +110,24 @@ def acceleration_histogram(data: ChainData) -> Figure | None:
 
 
 def _histogram(data: ChainData, which: str, quantity: str, words: str, title: str) -> Figure | None:
-    rows = rows_of(data, which)
-    used = rows[rows["frequency"] > LEAST_SHARE] if len(rows) else rows
-    if used.empty:
+    found = histogram_of(data, which)
+    if found is None:
         return None
-    per = data.units[quantity].per
+    low, wide = found.edges[:-1], np.diff(found.edges)
     with mpl.rc_context(STYLE):
         figure = new_figure(PAGE, 3.3)
         axes = figure.add_subplot()
-        low, wide = used["begin"].to_numpy(float) * per, (used["end"] - used["begin"]).to_numpy(float) * per
         style: Any = {"align": "edge", "color": BLUE, "edgecolor": "white", "linewidth": 0.5, "zorder": 2}
-        axes.bar(low, 100.0 * used["frequency"].to_numpy(float), wide, **style)
-        span = max(float((low + wide).max() - low.min()), 8.0 * float(wide.max()))
-        middle = (float((low + wide).max()) + float(low.min())) / 2
+        axes.bar(low, 100.0 * found.share, wide, **style)
+        span = max(float(found.edges[-1] - found.edges[0]), 8.0 * float(wide.max()))
+        middle = float(found.edges[-1] + found.edges[0]) / 2
         axes.set_xlim(middle - 0.53 * span, middle + 0.53 * span)
         axes.set_xlabel(label(data, quantity, words))
         axes.set_ylabel(tr("share of the time [%]"))
-        open_ends = used["lowest"].isna() | used["highest"].isna()
         told = tr("classes of {width} {unit}", width=number(float(np.median(wide)), 3), unit=data.units[quantity].unit)
-        if open_ends.any():
+        if found.open_low or found.open_high:
             told += tr("; the outermost have no end")
-        return titled(figure, data, title, told)
+        return titled(figure, title, f"{told}; {counted_told(of_rows=found.of_rows)}")
 
 
 def rainflow(data: ChainData) -> Figure | None:
@@ -145,7 +156,7 @@ def rainflow(data: ChainData) -> Figure | None:
         right.set_ylabel(label(data, "force", tr("range")))
         handles, labels = right.get_legend_handles_labels()
         legend_below(figure, handles, labels, 3)
-        return titled(figure, data, tr("cycles of the forces of couplings, by rainflow counting"))
+        return titled(figure, tr("cycles of the forces of couplings, by rainflow counting"))
 
 
 def _matrix(figure: Figure, axes: Axes, data: ChainData, rows: pd.DataFrame, per: float) -> None:

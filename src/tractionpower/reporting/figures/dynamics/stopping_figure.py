@@ -52,4 +52,4 @@ def stopping(data: ChainData) -> Figure | None:
         longest = max(shown, key=lambda stop: stop.distance_m)
         told = tr("stopping distance {distance} from {speed}", distance=told_value(data, "distance", longest.distance_m),
                   speed=told_value(data, "speed", longest.speed_kmh))  # fmt: skip
-        return titled(figure, data, tr("stopping"), told)
+        return titled(figure, tr("stopping"), told)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.reporting.figures.base.labels import LETTER, MOST_STATION_LETTERS, fitting, shortened
 from tractionpower.reporting.figures.base.style import BLUE, GREEN, GREY, INK, ORANGE, PAGE, PALE
-from tractionpower.reporting.figures.supply.panels import head, legend_below
+from tractionpower.reporting.figures.supply.panels import legend_below
 from tractionpower.reporting.texts import mark, tr
 
 Array = NDArray[Any]
@@ -32,14 +32,6 @@ STATES: dict[str, tuple[str, Any, str]] = {
 """Colour, dashes and words of a state; blue and green as in section 3.4 of Diviš and Kavička."""
 
 PLACE = mark("place [km]")
-
-
-def titled(figure: Figure, case: StationsCase, words: str, told: str = "") -> Figure:
-    """Write the title of a figure, with a line of what it tells below, and return the figure."""
-    head(figure, tr("{study}: {what}", study=case.name, what=words))
-    if told:
-        figure.suptitle(f"{figure.get_suptitle()}\n{told}", x=0.01, ha="left")
-    return figure
 
 
 def colour_of(state: str) -> str:

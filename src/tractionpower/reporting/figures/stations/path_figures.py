@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.reporting.figures.base.style import GREY, INK, ORANGE, PAGE, STYLE, new_figure
+from tractionpower.reporting.figures.dynamics.panels import titled
 from tractionpower.reporting.figures.stations.marks import (
     PLACE,
     by_train,
@@ -16,7 +17,6 @@ from tractionpower.reporting.figures.stations.marks import (
     name_stations,
     shade_stations,
     states_legend,
-    titled,
 )
 from tractionpower.reporting.texts import number, tr
 
@@ -35,7 +35,7 @@ def distance_over_time(case: StationsCase, rows: pd.DataFrame) -> Figure:
         axes.set(xlabel=tr("time [min]"), ylabel=tr(PLACE))
         states_legend(figure, rows["state"].astype(str).tolist())
         told = tr("trains: {count}; sampling period {period} s", count=rows["train"].nunique(), period=number(case.run.period_s))
-        return titled(figure, case, tr("place of trains over time"), told)
+        return titled(figure, tr("place of trains over time"), told)
 
 
 def speed_over_distance(case: StationsCase, rows: pd.DataFrame) -> Figure:
@@ -67,7 +67,7 @@ def speed_over_distance(case: StationsCase, rows: pd.DataFrame) -> Figure:
         figure.align_ylabels([axes, lower])
         states_legend(figure, rows["state"].astype(str).tolist())
         told = tr("permitted speed of the line {speed} km/h, dashed", speed=number(case.speed_kmh))
-        return titled(figure, case, tr("speed of trains over their way"), told)
+        return titled(figure, tr("speed of trains over their way"), told)
 
 
 def _gradients(case: StationsCase) -> tuple[list[float], list[float]]:

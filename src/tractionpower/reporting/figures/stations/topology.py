@@ -14,7 +14,8 @@ from tractionpower.dynamics.traindyn.layout import Layout, lay_out
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.reporting.figures.base.labels import LETTER, shortened
 from tractionpower.reporting.figures.base.style import GREY, INK, PAGE, STYLE, new_figure
-from tractionpower.reporting.figures.stations.marks import colour_of, states_legend, titled
+from tractionpower.reporting.figures.dynamics.panels import titled
+from tractionpower.reporting.figures.stations.marks import colour_of, states_legend
 from tractionpower.reporting.texts import number, tr
 
 MOST_INSTANTS = 6
@@ -50,7 +51,7 @@ def topology(case: StationsCase, rows: pd.DataFrame) -> Figure:
             )
         panels[-1].set_xlabel(tr("place [km], stations drawn longer than they are"))
         states_legend(figure, shown)
-        return titled(figure, case, tr("trains on the line, with their speeds"))
+        return titled(figure, tr("trains on the line, with their speeds"))
 
 
 def instants_of(case: StationsCase, rows: pd.DataFrame) -> list[float]:

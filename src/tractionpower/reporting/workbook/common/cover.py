@@ -69,6 +69,7 @@ KINDS = {
     "sweep": mark("Variants of a study"),
     "compare": mark("Comparison of results"),
     "dynamics": mark("Train dynamics: the train as many vehicles"),
+    "stations": mark("Train dynamics: trains as point masses on a line with stations"),
 }
 """What a report is, by the kind in ``run.json``."""
 

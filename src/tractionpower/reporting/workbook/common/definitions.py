@@ -77,15 +77,25 @@ STEPS = mark(
     "Tables that these results have, as Parquet files beside this workbook. A row of a time describes the step that begins"
     " then; currents and powers are positive when a train or load takes them, and when a substation feeds."
 )
-DYNAMICS = (
-    mark("Times count from the start of the case. Without an entry under defined by: the program's own."),
-    mark(
-        "Tables that these results have, as Parquet files beside this workbook. A row of a time describes that instant. A"
-        " force in a"
-        " coupling is positive in tension; brakes, resistance and gradient are positive against the direction of travel."
+SINCE_THE_START = mark("Times count from the start of the case. Without an entry under defined by: the program's own.")
+NOTES = {
+    "dynamics": (
+        SINCE_THE_START,
+        mark(
+            "Tables that these results have, as Parquet files beside this workbook. A row of a time describes that instant. A"
+            " force in a"
+            " coupling is positive in tension; brakes, resistance and gradient are positive against the direction of travel."
+        ),
     ),
-)
-"""Notes of the two sheets, those of train dynamics apart."""
+    "stations": (
+        SINCE_THE_START,
+        mark(
+            "Tables that these results have, as Parquet files beside this workbook. A row of a time describes that instant."
+            " Places are those of the front of a train, from where trains come."
+        ),
+    ),
+}
+"""Notes of the two sheets by the kind of results, those of train dynamics apart."""
 
 OWN_WORDS = {"coupling": mark("coupling between vehicles"), "level": mark("control level")}
 """Columns of train dynamics whose names mean something else in other tables."""
@@ -93,15 +103,15 @@ OWN_WORDS = {"coupling": mark("coupling between vehicles"), "level": mark("contr
 
 def add(book: Book) -> None:
     """Add the sheets of definitions: of the key figures, and of the columns of the tables that these results have."""
-    figures, is_chain = list(_figures(book)), book.computed.run.get("kind") == "dynamics"
+    figures, notes = list(_figures(book)), NOTES.get(str(book.computed.run.get("kind")), (MEANS, STEPS))
     if figures:
         page = book.page("Definitions", "Definitions of the key figures")
-        page.note(DYNAMICS[0] if is_chain else MEANS)
+        page.note(notes[0])
         page.table(_FIGURES, figures, frozen=True)
     columns = list(_columns(book))
     if columns:
         page = book.page("Columns", "Definitions of the columns of the tables")
-        page.note(DYNAMICS[1] if is_chain else STEPS)
+        page.note(notes[1])
         page.table(_COLUMNS, columns, frozen=True)
 
 

@@ -1,0 +1,1 @@
+"""The workbook of a case of trains on a line with stations."""
