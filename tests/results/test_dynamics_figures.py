@@ -1,17 +1,16 @@
 """Key figures of a train as many vehicles, held against its tables; ledger and verdicts."""
 
-import json
-
 import numpy as np
 import pytest
 from fake_dynamics import fake_results, fake_run, fake_scenario
 
-from tractionpower.kernels.chain_state import LINK
+from tractionpower.kernels.chain_state import LINK, MOVER
 from tractionpower.model.dynamics.coupling import Coupling
-from tractionpower.results.dynamics_figures import EnergyLedger, force_verdicts
+from tractionpower.results.dynamics_figures import force_verdicts, motion_figures, stop_figures
 from tractionpower.results.export import export_tables
 from tractionpower.results.kept import input_hash_of
 from tractionpower.results.results import Results
+from tractionpower.results.stops import Stop
 
 
 @pytest.fixture(scope="module")
@@ -29,13 +28,14 @@ def test_figures_are_those_of_the_tables(results):
     assert figure["time"] == f"{most['tension_at_s']:.2f} s"
     assert figure["unit"] == "kN"
     assert results.key_figure("greatest_compression_kn") == pytest.approx(extremes["greatest_compression_kn"].max())
-    assert results.key_figure("greatest_speed_kmh") == pytest.approx(first["speed_kmh"].max())
+    top = first["speed_kmh"].max()  # of the rows, 0.05 s apart; figures are those of all steps
+    assert top <= results.key_figure("greatest_speed_kmh") <= top + 0.05
     run_m = first["position_m"].iloc[-1] - first["position_m"].iloc[0]
     assert results.key_figure("distance_m") == pytest.approx(run_m)
     hardest = vehicles["acceleration_mps2"].abs().max()
-    assert abs(results.key_figure("greatest_acceleration_mps2")) == pytest.approx(hardest, rel=1e-6)
+    assert hardest * (1.0 - 1e-6) <= abs(results.key_figure("greatest_acceleration_mps2")) <= 1.2 * hardest
     farthest = vehicles["relative_position_m"].abs().max()
-    assert abs(results.key_figure("greatest_relative_movement_m")) == pytest.approx(farthest)
+    assert farthest * (1.0 - 1e-6) <= abs(results.key_figure("greatest_relative_movement_m")) <= 1.01 * farthest
     assert all(figure["definition"] for figure in results.key_figures)
 
 
@@ -46,7 +46,7 @@ def test_stop_is_that_of_the_rows(results):
     assert stop["braked_at_s"] == 30.0
     still = vehicles.groupby("time_s")["speed_kmh"].apply(lambda v: v.abs().max() == 0.0)
     stopped = still.index[(still.index > 30.0) & still][0]
-    assert stop["stopped_at_s"] == pytest.approx(stopped)
+    assert stopped - 0.05 <= stop["stopped_at_s"] <= stopped  # to the step, the rows are 0.05 s apart
     way = first["position_m"].loc[stopped] - first["position_m"].loc[30.0]
     assert results.key_figure("stopping_distance_m") == pytest.approx(way, abs=1e-6)
     assert results.key_figure("mean_deceleration_mps2") == pytest.approx((stop["braked_from_kmh"] / 3.6) ** 2 / 2 / way)
@@ -64,18 +64,38 @@ def test_energies_add_up(results):
     assert results.key_figure("coupling_energy_kwh") * 3600 == pytest.approx(extremes["absorbed_kj"].sum(), rel=1e-5)
 
 
-def test_a_ledger_with_a_hole_is_told():
-    ledger = EnergyLedger(3.6e6, 0.0, 1.8e6, 0.9e6, 0.0, 0.0, 0.0, 0.0)
-    assert ledger.gap == pytest.approx(0.9e6)
-    told = ledger.as_dict()
-    assert not told["closes"] and told["gap_share"] == pytest.approx(0.25)
-    downhill = EnergyLedger(0.0, 0.0, 3.6e6, 0.0, -3.6e6, 0.0, 0.0, 0.0)
-    assert downhill.as_dict()["closes"] and downhill.put_in == pytest.approx(3.6e6)
-    broken = EnergyLedger(float("nan"), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0).as_dict()
-    assert not broken["closes"] and broken["gap_kwh"] is None
-    json.dumps(broken, allow_nan=False)
-    from_nothing = EnergyLedger(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0).as_dict()
-    assert not from_nothing["closes"] and EnergyLedger(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0).as_dict()["closes"]
+def told(figures):
+    return {figure.name: figure for figure in figures}
+
+
+def test_a_train_that_rolls_backwards_is_told_in_magnitudes():
+    movers = np.zeros(2, MOVER)
+    movers["s_m"], movers["start_m"] = [-40.0, -54.0], [-7.0, -21.0]
+    movers["greatest_mps"], movers["greatest_at_s"] = [-3.0, -3.1], [61.0, 62.0]
+    movers["sharpest_mps2"], movers["sharpest_at_s"] = [-0.2, 0.5], [1.0, 63.0]
+    movers["furthest_m"], movers["furthest_at_s"] = [0.0, -0.03], [0.0, 64.0]
+    figures = told(motion_figures(movers, ["1 a", "2 b"]))
+    top, run = figures["greatest_speed_kmh"], figures["distance_m"]
+    assert (top.value, top.place, top.time) == (pytest.approx(10.8), "vehicle 1 a, backwards", "61.00 s")
+    assert (run.value, run.place) == (33.0, "vehicle 1 a, backwards")
+    sharpest, furthest = figures["greatest_acceleration_mps2"], figures["greatest_relative_movement_m"]
+    assert (sharpest.value, sharpest.place, sharpest.time) == (0.5, "vehicle 2 b", "63.00 s")
+    assert (furthest.value, furthest.place, furthest.time) == (-0.03, "vehicle 2 b", "64.00 s")
+
+
+def test_a_train_that_has_not_moved_was_at_its_greatest_speed_nowhere():
+    figures = told(motion_figures(np.zeros(1, MOVER), ["1 a"]))
+    assert {(figure.value, figure.time) for figure in figures.values()} == {(0.0, "")}
+    assert "greatest_relative_movement_m" not in figures
+
+
+def test_figures_of_a_stop_share_their_place():
+    figures = list(stop_figures([Stop(9.0, 1.0), Stop(30.0, -50.0, 20.0, -30.0, -4.0)]))
+    assert {figure.place for figure in figures} == {"stop 2, backwards"}
+    values = {figure.name: figure.value for figure in figures}
+    assert values["stopping_distance_m"] == 20.0 and values["stopping_time_s"] == 10.0
+    assert values["braked_from_kmh"] == pytest.approx(14.4)
+    assert values["mean_deceleration_mps2"] == pytest.approx(16.0 / 40.0)
 
 
 def coupling(name, tension, compression):

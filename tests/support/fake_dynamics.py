@@ -120,11 +120,13 @@ def fake_state() -> cs.ChainState:
 def fake_run() -> SimpleNamespace:
     """Return the recorded rows (chain, vehicles, links, turns), the state at the start and that at the end."""
     state, start = fake_state(), fake_state()
-    chain, vehicles, links, turns = [], [], [], []
+    chain, vehicles, links, turns, marks = [], [], [], [], []
     every = round(RECORD_S / STEP_S)
     for step in range(round(END_S / STEP_S) + 1):
+        held, before = int(state.ledger["control_row"][0]), state.movers.copy()
         rates = _move(state, step * STEP_S, is_first=step == 0)
         _watch(state, turns)
+        _follow(state, before, held, marks)
         if step % every == 0:
             chain.append(_chain_row(state))
             vehicles.append(state.movers[list(cs.VEHICLE_ROW.names)].astype(cs.VEHICLE_ROW))
@@ -135,6 +137,7 @@ def fake_run() -> SimpleNamespace:
         vehicles=np.stack(vehicles),
         links=np.stack(links),
         turns=np.array(turns, cs.TURN),
+        marks=np.array(marks, cs.MARK),
         start=start,
         state=state,
     )
@@ -205,6 +208,24 @@ def _watch(state: cs.ChainState, turns: list[tuple[int, float]]) -> None:
             link["turn_n"], link["turning"] = force, -link["turning"]
 
 
+def _follow(state: cs.ChainState, before: np.ndarray, held: int, marks: list[tuple[float, float, float, int]]) -> None:
+    """Keep the extremes of the vehicles, and mark commands and standstills; `before` are the vehicles at the beginning."""
+    movers, ledger = state.movers, state.ledger[0]
+    now, first = ledger["time_s"], movers[0]
+    if ledger["control_row"] > held:
+        marks.append((now, first["s_m"], first["v_mps"], int(ledger["control_row"])))
+    moved = movers["s_m"] - movers["start_m"]
+    for name, at, values in (
+        ("greatest_mps", "greatest_at_s", movers["v_mps"]),
+        ("sharpest_mps2", "sharpest_at_s", (movers["v_mps"] - before["v_mps"]) / STEP_S),
+        ("furthest_m", "furthest_at_s", moved - moved[0]),
+    ):
+        more = np.abs(values) > np.abs(movers[name])
+        movers[name][more], movers[at][more] = values[more], now
+    if (movers["v_mps"] == 0.0).all() and (before["v_mps"] != 0.0).any():
+        marks.append((now, movers["s_m"][0], 0.0, -1))
+
+
 def _spend(state: cs.ChainState, control: np.void, h: float) -> None:
     """Add the time of a step to the bins."""
     speed, force, acceleration = fake_bins()
@@ -239,10 +260,12 @@ def record_fake(writer: Any, cuts: tuple[int, ...] = (300, 700), **case: Any) ->
     made = fake_run()
     recorder = ChainRecorder(fake_scenario(**case), fake_names(), INERTIAS, made.start, writer)
     edges = [0, *cuts, len(made.chain)]
+    mark_edges = [round(edge / len(made.chain) * len(made.marks)) for edge in edges]
     turn_edges = [round(edge / len(made.chain) * len(made.turns)) for edge in edges]
     for k in range(len(edges) - 1):
         rows, turns = slice(edges[k], edges[k + 1]), slice(turn_edges[k], turn_edges[k + 1])
-        recorder.add(made.chain[rows], made.vehicles[rows], made.links[rows], made.turns[turns])
+        marks = made.marks[mark_edges[k] : mark_edges[k + 1]]
+        recorder.add(made.chain[rows], made.vehicles[rows], made.links[rows], made.turns[turns], marks)
     recorder.close(made.state, fake_bins())
     return recorder, made.state
 

@@ -56,7 +56,7 @@ def drive(
     with call.preparing(force=force, study=driven) as writer:
         from tractionpower.web.live import LiveRun
 
-        live = LiveRun(call.scenario, writer, driven)
+        live = LiveRun(call.scenario, writer, driven, call.loaded.problems)
     call.warn(live.warnings)
     failure = _drive(live, writer, port=port, no_browser=no_browser, leave_s=None if stay else 15.0)
     if not live.has_driven:

@@ -90,10 +90,10 @@ def _new_run(call: CaseCall, writer: RunWriter) -> CaseRun | StationsRun:
     if call.kind == "dynamics":
         from tractionpower.dynamics.run import CaseRun
 
-        return CaseRun(call.scenario, writer, call.name)
+        return CaseRun(call.scenario, writer, call.name, warnings=call.loaded.problems)
     from tractionpower.dynamics.traindyn.stations_run import StationsRun
 
-    return StationsRun(call.scenario, writer, call.name)
+    return StationsRun(call.scenario, writer, call.name, call.loaded.problems)
 
 
 def _show(outcome: Outcome, units: str) -> None:

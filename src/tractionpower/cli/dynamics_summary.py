@@ -100,7 +100,8 @@ def _lines(run: Mapping[str, Any]) -> Iterator[str]:
     ledger = run["ledgers"]["energy"]
     closes = "closes" if ledger["closes"] else "DOES NOT CLOSE"
     share = "no number" if ledger["gap_share"] is None else f"{100.0 * ledger['gap_share']:.2g} %"
-    yield f"energy ledger {closes}: {share} of the energy put in is left over"
+    limit = f"; {100.0 * ledger['limit_share']:g} % is the limit for {run['method']}"
+    yield f"energy ledger {closes}: {share} of the energy put in is left over{limit}"
     words = f"{run['steps']} steps of {run['method']}, {run['end_s']:g} s in {run['wall_seconds']:.1f} s"
     more = f", {run['cut_steps']} cut where a vehicle came to a stand" if run["cut_steps"] else ""
     yield words + more

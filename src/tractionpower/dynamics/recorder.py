@@ -10,17 +10,16 @@ from numpy.typing import NDArray
 
 from tractionpower.dynamics.statistics import RainflowCounter, relative_damage
 from tractionpower.errors import UsageError
-from tractionpower.kernels.chain_state import ChainState
+from tractionpower.kernels.chain_state import MARK, ChainState
 from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.results.dynamics_figures import (
-    EnergyLedger,
-    Motion,
     coupling_figures,
     energy_figures,
     force_verdicts,
     motion_figures,
     stop_figures,
 )
+from tractionpower.results.dynamics_ledger import EnergyLedger, closing_note
 from tractionpower.results.dynamics_tables import (
     controls_table,
     coupling_extremes_table,
@@ -32,7 +31,7 @@ from tractionpower.results.dynamics_tables import (
 )
 from tractionpower.results.key_figures import KeyFigure
 from tractionpower.results.outcome import Writer
-from tractionpower.results.stops import Stop, braking_spells
+from tractionpower.results.stops import Stop, braking_spells, find_stops
 
 Array = NDArray[Any]
 
@@ -68,10 +67,10 @@ class ChainRecorder:
         self.vehicles, self.couplings = names
         self._inertia_kg = np.array(inertia_kg, float)
         self._kinetic_start_j = float(kinetic_j(state.movers["v_mps"], self._inertia_kg))
-        standstill = max(scenario.case.standstill_mps, 1e-6)
-        self.motion = Motion(state.movers["s_m"].copy(), standstill)
+        self._start_m = state.movers["s_m"].copy()
+        self._start = float(state.movers[0]["s_m"]), float(state.movers[0]["v_mps"])
         self.notes: list[str] = []
-        self.marks: list[Array] = []
+        self._marks: list[Array] = []
         self._is_closed = False
         self.cycles: RainflowCounter | None = None
         try:
@@ -81,14 +80,13 @@ class ChainRecorder:
 
     def add(self, chain: Array, vehicles: Array, links: Array, turns: Array, marks: Array) -> None:
         """Take recorded rows: records of `CHAIN_ROW`, `VEHICLE_ROW`, `LINK_ROW`, `TURN` and `MARK`, those in use."""
-        self.marks.append(marks)
+        self._marks.append(marks)
         if len(chain):
             time_s = chain["time_s"]
             self.writer.append("controls", controls_table(chain, kinetic_j(vehicles["v_mps"], self._inertia_kg)))
-            self.writer.append("vehicles", vehicles_table(time_s, self.vehicles, vehicles, self.motion.start_m))
+            self.writer.append("vehicles", vehicles_table(time_s, self.vehicles, vehicles, self._start_m))
             if len(self.couplings):
                 self.writer.append("couplings", couplings_table(time_s, self.couplings, links))
-            self.motion.add(time_s, vehicles)
         if self.cycles is not None and len(turns):
             self.cycles.add(turns)
 
@@ -121,10 +119,11 @@ class ChainRecorder:
         return EnergyLedger.of(state.ledger[0], self._kinetic_start_j, float(kinetic_j(state.movers["v_mps"], self._inertia_kg)))
 
     def stops(self, state: ChainState) -> list[Stop]:
-        """Return the stops in what has been recorded."""
+        """Return the stops up to a state."""
         pipe = state.pipe[: int(state.ledger[0]["pipe_rows"])]
         controls = state.controls[: int(state.ledger[0]["control_row"]) + 1]
-        return self.motion.stops(braking_spells(controls, pipe))
+        marks = np.concatenate([np.zeros(0, MARK), *self._marks])
+        return find_stops(marks, self._start, braking_spells(controls, pipe))
 
     def key_figures(self, state: ChainState) -> list[dict[str, Any]]:
         """Return what ``key_figures.json`` holds."""
@@ -132,7 +131,7 @@ class ChainRecorder:
         steps = KeyFigure("steps", float(ledger["steps"]), definition=STEPS_DEFINITION)
         figures = [
             *coupling_figures(self.couplings, state.links),
-            *motion_figures(self.motion, self.vehicles),
+            *motion_figures(state.movers, self.vehicles),
             *stop_figures(self.stops(state)),
             *energy_figures(self.ledger(state)),
             steps,
@@ -147,11 +146,12 @@ class ChainRecorder:
 
     def summary(self, state: ChainState) -> dict[str, Any]:
         """Return what ``run.json`` says of the train: vehicles, couplings, stops, ledger, verdicts, notes."""
-        ledger, case = state.ledger[0], self.scenario.case
+        ledger, setup, energy = state.ledger[0], self.scenario.case.run, self.ledger(state)
+        note = closing_note(energy.gap_share, setup.method, setup.step_s, setup.tolerance)
         return {
             "end_s": float(ledger["time_s"]),
-            "method": case.run.method,
-            "step_s": case.run.step_s,
+            "method": setup.method,
+            "step_s": setup.step_s,
             "steps": int(ledger["steps"]),
             "cut_steps": int(ledger["splits"]),
             "rejected_steps": int(ledger["rejected"]),
@@ -160,7 +160,7 @@ class ChainRecorder:
             "vehicles": list(self.vehicles),
             "couplings": list(self.couplings),
             "stops": [stop.as_dict() for stop in self.stops(state)],
-            "ledgers": {"energy": self.ledger(state).as_dict()},
+            "ledgers": {"energy": energy.as_dict(setup.method)},
             "verdicts": self.verdicts(state),
-            "notes": list(self.notes),
+            "notes": [*self.notes, *([note] if note else [])],
         }

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from tractionpower.dynamics.checks import check_case
 from tractionpower.dynamics.recorder import ChainRecorder
 from tractionpower.dynamics.session import NotComputableError, Session
-from tractionpower.errors import raise_errors
+from tractionpower.errors import Problem, raise_errors
 from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.results.kept import input_hash_of
 from tractionpower.results.outcome import Outcome, Progress, Writer
@@ -37,6 +37,8 @@ class CaseRun:
         Name of the case, for ``run.json``.
     new_session
         Makes the session of a case that has been checked.
+    warnings
+        What reading the case has found, to be kept with the results beside the warnings of the checks.
 
     Raises
     ------
@@ -50,10 +52,12 @@ class CaseRun:
         writer: Writer,
         study: str = "",
         new_session: Callable[[DynamicsScenario], Session] = Session,
+        warnings: Iterable[Problem] = (),
     ) -> None:
         problems = check_case(scenario)
         raise_errors(problems)
         self.scenario, self.study, self.warnings = scenario, study, tuple(problems)
+        self._found_reading = tuple(warnings)
         self.session = new_session(scenario)
         compiled = self.session.compiled
         names = compiled.vehicle_names, compiled.coupling_names
@@ -113,7 +117,7 @@ class CaseRun:
             "versions": versions(),
             "wall_seconds": time.perf_counter() - self._started - self._compile_s,
             "compile_seconds": self._compile_s,
-            "warnings": [str(problem) for problem in self.warnings],
+            "warnings": [str(problem) for problem in (*self._found_reading, *self.warnings)],
             **summary,
         }
         return Outcome(run, self.recorder.key_figures(state), self.warnings)
@@ -133,15 +137,21 @@ class CaseRun:
         return "complete" if closes else "flagged"
 
 
-def run_case(scenario: DynamicsScenario, writer: RunWriter, study: str = "", progress: Progress | None = None) -> Outcome:
-    """Run a case and complete the results in the folder of `writer`.
+def run_case(
+    scenario: DynamicsScenario,
+    writer: RunWriter,
+    study: str = "",
+    progress: Progress | None = None,
+    warnings: Iterable[Problem] = (),
+) -> Outcome:
+    """Run a case and complete the results in the folder of `writer`; `warnings` of reading it are kept with them.
 
     Raises
     ------
     InputError
         With all problems of the case.
     """
-    run = CaseRun(scenario, writer, study)
+    run = CaseRun(scenario, writer, study, warnings=warnings)
     outcome = run.execute(progress)
     writer.finish(outcome.run, outcome.key_figures)
     return outcome

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tractionpower.model.dynamics.coupling import Coupling
-from tractionpower.results.dynamics_tables import KN, KWH, relative_m
+from tractionpower.results.dynamics_ledger import EnergyLedger
+from tractionpower.results.dynamics_tables import KN, KWH
 from tractionpower.results.key_figures import KeyFigure
-from tractionpower.results.stops import Spell, Stop, find_stops
+from tractionpower.results.stops import Stop
 from tractionpower.results.verdicts import AT_MOST
 
 Array = NDArray[Any]
-
-CLOSES_SHARE = 1e-2
-"""Part of the energy put in within which the ledger closes; methods of first order leave some thousandths."""
 
 WORKS = {
     "traction_energy_kwh": ("traction", "work of the tractive effort, sum over the steps of force times speed"),
@@ -31,109 +28,6 @@ WORKS = {
         "work that the couplings have taken in; what their springs hold at the end is part of it",
     ),
 }
-
-
-@dataclass(frozen=True, slots=True)
-class EnergyLedger:
-    """Where the energy has gone [J]: traction + kinetic at the start = all that took some + kinetic at the end.
-
-    Attributes
-    ----------
-    traction, electric, brake, resistance, gravity, coupling
-        Works since the start; gravity is negative downhill.
-    kinetic_start, kinetic_end
-        Kinetic energy with rotating parts.
-    """
-
-    traction: float
-    electric: float
-    brake: float
-    resistance: float
-    gravity: float
-    coupling: float
-    kinetic_start: float
-    kinetic_end: float
-
-    @classmethod
-    def of(cls, ledger: Any, kinetic_start_j: float, kinetic_end_j: float) -> EnergyLedger:
-        """Return the ledger from a record of `LEDGER` or `CHAIN_ROW`, and the kinetic energies [J]."""
-        names = ("traction_j", "electric_j", "brake_j", "resistance_j", "grade_j", "coupling_j")
-        traction, electric, brake, resistance, gravity, coupling = (float(ledger[name]) for name in names)
-        return cls(traction, electric, brake, resistance, gravity, coupling, kinetic_start_j, kinetic_end_j)
-
-    @property
-    def gap(self) -> float:
-        """What is left over [J]."""
-        taken = self.electric + self.brake + self.resistance + self.gravity + self.coupling
-        return self.traction + self.kinetic_start - taken - self.kinetic_end
-
-    @property
-    def put_in(self) -> float:
-        """Energy put in [J]: traction, kinetic energy at the start, what a descent gives."""
-        return max(self.traction, 0.0) + self.kinetic_start + max(-self.gravity, 0.0)
-
-    @property
-    def gap_share(self) -> float:
-        """The gap over the energy put in; where nothing was put in, 0 without a gap and infinite with one."""
-        if self.put_in == 0.0:
-            return 0.0 if self.gap == 0.0 else float("inf")
-        return abs(self.gap) / self.put_in
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return energies [kWh] and how well they close; none where there is no number."""
-        names = ("traction", "electric", "brake", "resistance", "gravity", "coupling", "kinetic_start", "kinetic_end")
-        told = {"gap_kwh": self.gap / KWH, "gap_share": self.gap_share}
-        told |= {f"{name}_kwh": getattr(self, name) / KWH for name in names}
-        closes = bool(self.gap_share <= CLOSES_SHARE)  # not a number does not close
-        return {"closes": closes} | {name: value if np.isfinite(value) else None for name, value in told.items()}
-
-
-class Motion:
-    """What the recorded rows of the vehicles tell, summed up as they come.
-
-    Parameters
-    ----------
-    start_m
-        Places of the vehicles at the start [m].
-    standstill_mps
-        Speed up to which a vehicle stands [m/s].
-    """
-
-    def __init__(self, start_m: Array, standstill_mps: float) -> None:
-        self.start_m, self.standstill_mps = start_m, standstill_mps
-        self.acceleration, self.relative = _Greatest(), _Greatest()
-        self._pieces: list[tuple[Array, Array, Array, Array]] = []
-
-    def add(self, time_s: Array, rows: Array) -> None:
-        """Add rows: times [s], shape (rows,), records of `VEHICLE_ROW`, shape (rows, vehicles)."""
-        if not len(time_s):
-            return
-        self.acceleration.add(time_s, rows["a_mps2"])
-        self.relative.add(time_s, relative_m(rows, self.start_m))
-        standing = np.abs(rows["v_mps"]).max(axis=1) <= self.standstill_mps
-        self._pieces.append((time_s.copy(), rows["s_m"][:, 0].copy(), rows["v_mps"][:, 0].copy(), standing))
-
-    def track(self) -> tuple[Array, Array, Array, Array]:
-        """Return time [s], place [m] and speed [m/s] of the first vehicle, and whether the whole train stands."""
-        if not self._pieces:
-            return np.empty(0), np.empty(0), np.empty(0), np.empty(0, bool)
-        return tuple(np.concatenate(parts) for parts in zip(*self._pieces, strict=True))  # type: ignore[return-value]
-
-    def stops(self, spells: Sequence[Spell]) -> list[Stop]:
-        """Return the stops of the train, braked in `spells`."""
-        return find_stops(*self.track(), spells)
-
-
-class _Greatest:
-    """The value of greatest magnitude of several series, with its time and number."""
-
-    def __init__(self) -> None:
-        self.value, self.time_s, self.number = 0.0, np.nan, -1
-
-    def add(self, time_s: Array, values: Array) -> None:
-        row, number = np.unravel_index(np.abs(values).argmax(), values.shape)
-        if abs(values[row, number]) > abs(self.value):
-            self.value, self.time_s, self.number = float(values[row, number]), float(time_s[row]), int(number)
 
 
 def when(time_s: float) -> str:
@@ -162,24 +56,46 @@ def coupling_figures(names: Sequence[str], links: Array) -> Iterator[KeyFigure]:
     yield KeyFigure("greatest_absorbed_kj", float(links["absorbed_j"][taken]) / 1e3, f"coupling {names[taken]}", "", definition)
 
 
-def motion_figures(motion: Motion, names: Sequence[str]) -> Iterator[KeyFigure]:
-    """Yield speed, distance, acceleration and relative movement from recorded rows."""
-    time_s, place_m, speed_mps, _ = motion.track()
-    if not len(time_s):
-        return
-    top = int(speed_mps.argmax())
-    definition = "greatest of the first vehicle, recorded rows"
-    yield KeyFigure("greatest_speed_kmh", float(speed_mps[top]) * 3.6, f"vehicle {names[0]}", when(time_s[top]), definition)
-    run_m = float(place_m[-1] - motion.start_m[0])
-    yield KeyFigure("distance_m", run_m, f"vehicle {names[0]}", "", "way of the first vehicle from the start to the end")
-    for name, most, definition in (
-        ("greatest_acceleration_mps2", motion.acceleration, "of greatest magnitude of all vehicles, recorded rows"),
-        ("greatest_relative_movement_m", motion.relative, "farthest that a vehicle has moved against the first since the start"),
-    ):
-        if most is motion.relative and len(names) == 1:
-            continue
-        place = f"vehicle {names[most.number]}" if most.number >= 0 else ""
-        yield KeyFigure(name, most.value, place, when(most.time_s), definition)
+BACKWARDS = "{place}, backwards"
+"""A place of what happened while a vehicle rolled backwards."""
+
+
+def motion_figures(movers: Array, names: Sequence[str]) -> Iterator[KeyFigure]:
+    """Yield speed, distance, acceleration and relative movement from the extremes of all steps.
+
+    Parameters
+    ----------
+    movers
+        Records of `MOVER` at the end, shape (vehicles,).
+    names
+        Their names.
+    """
+    first = movers[0]
+    definition = "greatest of the first vehicle and all steps, of either direction"
+    yield _directed("greatest_speed_kmh", 3.6 * first["greatest_mps"], names[0], when(first["greatest_at_s"]), definition)
+    definition = "how far the first vehicle is at the end from where it started"
+    yield _directed("distance_m", first["s_m"] - first["start_m"], names[0], "", definition)
+    hardest, farthest = np.abs(movers["sharpest_mps2"]).argmax(), np.abs(movers["furthest_m"]).argmax()
+    value, at_s = movers[hardest]["sharpest_mps2"], movers[hardest]["sharpest_at_s"]
+    definition = "of greatest magnitude of all vehicles and steps, mean of a step"
+    yield KeyFigure("greatest_acceleration_mps2", float(value), *_place(names[hardest], value, at_s), definition)
+    if len(names) > 1:
+        value, at_s = movers[farthest]["furthest_m"], movers[farthest]["furthest_at_s"]
+        definition = "farthest that a vehicle has moved against the first since the start, of all steps"
+        yield KeyFigure("greatest_relative_movement_m", float(value), *_place(names[farthest], value, at_s), definition)
+
+
+def _directed(name: str, value: float, vehicle: str, at: str, definition: str) -> KeyFigure:
+    """Return a figure of the magnitude of a value, whose place tells when it went backwards."""
+    place = f"vehicle {vehicle}"
+    return KeyFigure(
+        name, abs(float(value)), BACKWARDS.format(place=place) if value < 0.0 else place, at if value else "", definition
+    )
+
+
+def _place(vehicle: str, value: float, at_s: float) -> tuple[str, str]:
+    """Return where and when a value was found; nothing for none."""
+    return (f"vehicle {vehicle}", when(at_s)) if value else ("", "")
 
 
 def stop_figures(stops: Sequence[Stop]) -> Iterator[KeyFigure]:
@@ -188,11 +104,15 @@ def stop_figures(stops: Sequence[Stop]) -> Iterator[KeyFigure]:
         if not stop.is_braked:
             continue
         place, at = f"stop {number}", when(stop.braked_at_s)
+        if stop.is_backwards:
+            place = BACKWARDS.format(place=place)
         definition = "way of the first vehicle from the brake command to the standstill of the whole train; time of the command"
         yield KeyFigure("stopping_distance_m", stop.distance_m, place, at, definition)
-        definition = "from the brake command to the standstill of the whole train, to the recorded row; time of the command"
+        definition = "from the brake command to the standstill of the whole train, to the step; time of the command"
         yield KeyFigure("stopping_time_s", stop.time_s, place, at, definition)
-        yield KeyFigure("braked_from_kmh", stop.speed_mps * 3.6, place, at, "speed of the first vehicle at the brake command")
+        yield KeyFigure(
+            "braked_from_kmh", abs(stop.speed_mps) * 3.6, place, at, "speed of the first vehicle at the brake command"
+        )
         definition = "v²/(2 s) of the speed at the brake command and the stopping distance"
         yield KeyFigure("mean_deceleration_mps2", stop.mean_deceleration_mps2, place, at, definition)
 

@@ -13,8 +13,11 @@ Array = NDArray[Any]
 Spell = tuple[float, float]
 """Time in which the driver brakes [s]: from, to (infinite: still)."""
 
-MOVES_MPS = 0.1
-"""A train that has stood moves again when its first vehicle is faster than that; slower it settles in its couplings [m/s]."""
+MOVED_M = 0.1
+"""A train that has stood has moved when its first vehicle is farther away than that; nearer it settles in its couplings [m]."""
+
+_TINY_S = 1e-6
+"""Times closer than this are one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +29,8 @@ class Stop:
     stopped_at_s, stopped_at_m
         When the whole train stands, and where the middle of its first vehicle is then.
     braked_at_s, braked_at_m, speed_mps
-        When the command came from which on the driver braked to this stop, place and speed of the first vehicle then; not a
-        number where he did not brake.
+        When the command came from which on the driver braked to this stop, place and speed of the first vehicle then, negative
+        backwards; not a number where he did not brake.
     """
 
     stopped_at_s: float
@@ -43,8 +46,13 @@ class Stop:
 
     @property
     def distance_m(self) -> float:
-        """Stopping distance [m]."""
-        return self.stopped_at_m - self.braked_at_m
+        """Stopping distance: how far the first vehicle is from where the command came, whichever way it went [m]."""
+        return abs(self.stopped_at_m - self.braked_at_m)
+
+    @property
+    def is_backwards(self) -> bool:
+        """Whether the first vehicle came to its stand behind the place of the command."""
+        return self.stopped_at_m < self.braked_at_m
 
     @property
     def time_s(self) -> float:
@@ -53,72 +61,58 @@ class Stop:
 
     @property
     def mean_deceleration_mps2(self) -> float:
-        """v²/(2 s), the mean over the way [m/s²]."""
-        return self.speed_mps**2 / (2.0 * self.distance_m) if self.distance_m > 0.0 else float("nan")
+        """v²/(2 s), the mean over the way [m/s²]; no number for a train that stood at the command, or has rolled back since."""
+        has_turned = self.speed_mps * (self.stopped_at_m - self.braked_at_m) <= 0.0
+        return float("nan") if has_turned else self.speed_mps**2 / (2.0 * self.distance_m)
 
-    def as_dict(self) -> dict[str, float | None]:
-        """Return the stop as ``run.json`` has it, none where there is no number."""
+    def as_dict(self) -> dict[str, float | bool | None]:
+        """Return the stop as ``run.json`` has it, speed and distance as magnitudes; none where there is no number."""
         told = {
             "braked_at_s": self.braked_at_s,
             "braked_at_m": self.braked_at_m,
-            "braked_from_kmh": self.speed_mps * 3.6,
+            "braked_from_kmh": abs(self.speed_mps) * 3.6,
             "stopped_at_s": self.stopped_at_s,
             "stopped_at_m": self.stopped_at_m,
             "stopping_distance_m": self.distance_m,
             "stopping_time_s": self.time_s,
             "mean_deceleration_mps2": self.mean_deceleration_mps2,
         }
-        return {name: value if np.isfinite(value) else None for name, value in told.items()}
+        found = {name: value if np.isfinite(value) else None for name, value in told.items()}
+        return found | {"backwards": self.is_backwards if self.is_braked else None}
 
 
-def find_stops(time_s: Array, place_m: Array, speed_mps: Array, standing: Array, spells: Sequence[Spell]) -> list[Stop]:
-    """Return the stops in recorded rows.
+def find_stops(marks: Array, start: tuple[float, float], spells: Sequence[Spell]) -> list[Stop]:
+    """Return the stops of a train; they are those of the steps, however coarse rows are recorded.
 
     Parameters
     ----------
-    time_s, place_m, speed_mps
-        Time, and place and speed of the first vehicle.
-    standing
-        Whether the whole train stands.
+    marks
+        Records of `MARK`: where the first vehicle was when controls came to hold, and when the whole train came to a stand.
+    start
+        Place [m] and speed [m/s] of the first vehicle at time 0.
     spells
         Times in which the driver brakes, in their order.
     """
     stops: list[Stop] = []
-    moves, since_s = False, -np.inf
-    moving = np.abs(speed_mps) > MOVES_MPS
-    changes = np.flatnonzero(np.diff(np.stack([moving, standing]), axis=1, prepend=True).any(axis=0))
-    for row in sorted({0, *changes.tolist()} if len(time_s) else ()):
-        if moving[row] and not moves:
-            moves, since_s = True, float(time_s[row - 1]) if row else -np.inf
-        elif standing[row] and moves:
-            moves = False
-            stops.append(_stop(time_s, place_m, speed_mps, row, [s for s in spells if s[1] > since_s]))
+    (from_m, speed_mps), since_s = start, -np.inf
+    moves = speed_mps != 0.0
+    commands = marks[marks["control"] >= 0]
+    for mark in marks[marks["control"] < 0]:
+        at_s, at_m = float(mark["time_s"]), float(mark["s_m"])
+        if moves or abs(at_m - from_m) > MOVED_M:
+            reaching = [begin for begin, end in spells if end > since_s and begin <= at_s and end >= at_s - _TINY_S]
+            stops.append(Stop(at_s, at_m, *_commanded(commands, start, reaching[-1])) if reaching else Stop(at_s, at_m))
+            from_m, moves = at_m, False
+        since_s = at_s
     return stops
 
 
-def _stop(time_s: Array, place_m: Array, speed_mps: Array, row: int, spells: Sequence[Spell]) -> Stop:
-    """Return the stop at a row, with the spell of braking that reaches to it."""
-    at_s, at_m = float(time_s[row]), float(place_m[row])
-    before_s = float(time_s[row - 1]) if row else at_s
-    reaching = [begin for begin, end in spells if begin <= at_s and end >= before_s]
-    if not reaching:
-        return Stop(at_s, at_m)
-    begin = max(reaching[-1], float(time_s[0]))
-    return Stop(at_s, at_m, begin, *_between(time_s, place_m, speed_mps, begin))
-
-
-def _between(time_s: Array, place_m: Array, speed_mps: Array, at_s: float) -> tuple[float, float]:
-    """Return place and speed between rows: the cubic through places and speeds of the rows on both sides."""
-    k = int(np.clip(np.searchsorted(time_s, at_s, side="right") - 1, 0, max(len(time_s) - 2, 0)))
-    if k + 1 >= len(time_s):
-        return float(place_m[k]), float(speed_mps[k])
-    width = float(time_s[k + 1] - time_s[k])
-    u = (at_s - float(time_s[k])) / width
-    s0, s1, v0, v1 = float(place_m[k]), float(place_m[k + 1]), float(speed_mps[k]), float(speed_mps[k + 1])
-    rise = s1 - s0
-    place = s0 + u * (width * v0 + u * (3.0 * rise - width * (2.0 * v0 + v1) + u * (width * (v0 + v1) - 2.0 * rise)))
-    speed = v0 + u * (6.0 * rise / width - 4.0 * v0 - 2.0 * v1 + u * 3.0 * (v0 + v1 - 2.0 * rise / width))
-    return place, speed
+def _commanded(commands: Array, start: tuple[float, float], at_s: float) -> tuple[float, float, float]:
+    """Return time [s], place [m] and speed [m/s] of the first vehicle when a command came."""
+    if at_s <= _TINY_S:  # what holds at the start is not marked
+        return 0.0, *start
+    found = commands[np.abs(commands["time_s"] - at_s) <= _TINY_S]
+    return (at_s, float(found[0]["s_m"]), float(found[0]["v_mps"])) if len(found) else (at_s, np.nan, np.nan)
 
 
 def braking_spells(controls: Array, pipe: Array) -> list[Spell]:

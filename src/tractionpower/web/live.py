@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, cast
@@ -14,6 +14,7 @@ import numpy as np
 from tractionpower.dynamics.driven import DrivenSession
 from tractionpower.dynamics.run import CaseRun
 from tractionpower.dynamics.session import Rows
+from tractionpower.errors import Problem
 from tractionpower.model.dynamics.case import Command, DynamicsScenario
 from tractionpower.results.outcome import Outcome
 from tractionpower.results.store import RunWriter
@@ -37,6 +38,8 @@ class LiveRun:
         Takes the rows, while driving.
     study
         Name of the case, for ``run.json``.
+    warnings
+        What reading the case has found, to be kept with the results.
 
     Raises
     ------
@@ -44,8 +47,8 @@ class LiveRun:
         With all problems of the case.
     """
 
-    def __init__(self, scenario: DynamicsScenario, writer: RunWriter, study: str) -> None:
-        self._run = CaseRun(scenario, writer, study, DrivenSession)
+    def __init__(self, scenario: DynamicsScenario, writer: RunWriter, study: str, warnings: Iterable[Problem] = ()) -> None:
+        self._run = CaseRun(scenario, writer, study, DrivenSession, warnings)
         self.session = cast(DrivenSession, self._run.session)
         self._scenario, self._writer = scenario, writer
         self._driven = Driven(row for row in scenario.case.commands if row.time_s == 0.0)

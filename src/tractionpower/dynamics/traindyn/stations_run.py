@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterable
 from pathlib import Path
 
 from tractionpower.dynamics.traindyn.station_checks import check_stations
 from tractionpower.dynamics.traindyn.station_recorder import StationRecorder
 from tractionpower.dynamics.traindyn.stations import StationsModel, import_simpy
-from tractionpower.errors import raise_errors
+from tractionpower.errors import Problem, raise_errors
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.results.kept import input_hash_of
 from tractionpower.results.outcome import Outcome, Progress, Writer
@@ -34,6 +35,8 @@ class StationsRun:
         Takes the rows of the tables ``point_masses`` and ``station_events``.
     study
         Name of the case, for ``run.json``.
+    warnings
+        What reading the case has found, to be kept with the results beside the warnings of the checks.
 
     Raises
     ------
@@ -43,10 +46,11 @@ class StationsRun:
         If SimPy is not installed.
     """
 
-    def __init__(self, scenario: StationsCase, writer: Writer, study: str = "") -> None:
+    def __init__(self, scenario: StationsCase, writer: Writer, study: str = "", warnings: Iterable[Problem] = ()) -> None:
         problems = check_stations(scenario)
         raise_errors(problems)
         self.scenario, self.study, self.warnings = scenario, study, tuple(problems)
+        self._found_reading = tuple(warnings)
         self._env = import_simpy().Environment()
         self._recorder = StationRecorder(scenario, writer)
         self._model = StationsModel(scenario, self._env, self._recorder)
@@ -88,7 +92,7 @@ class StationsRun:
             "seed": case.seed,
             "versions": versions(),
             "wall_seconds": time.perf_counter() - self._started,
-            "warnings": [str(problem) for problem in self.warnings],
+            "warnings": [str(problem) for problem in (*self._found_reading, *self.warnings)],
             "verdicts": [],
             "ledgers": {},
             "notes": self._recorder.notes(),

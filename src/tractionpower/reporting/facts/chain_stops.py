@@ -20,7 +20,9 @@ class Stop:
     from_m, to_m
         Place of the first vehicle then [m].
     speed_kmh
-        Speed of the first vehicle at the brake command.
+        Speed of the first vehicle at the brake command, its magnitude.
+    deceleration_mps2
+        Mean deceleration over the distance, v²/(2 s) [m/s²]; no number where the train stood at the command, or has rolled back.
     """
 
     from_s: float
@@ -28,21 +30,17 @@ class Stop:
     from_m: float
     to_m: float
     speed_kmh: float
+    deceleration_mps2: float = float("nan")
 
     @property
     def distance_m(self) -> float:
-        """Stopping distance [m]."""
-        return self.to_m - self.from_m
+        """Stopping distance [m], whichever way."""
+        return abs(self.to_m - self.from_m)
 
     @property
     def time_s(self) -> float:
         """Stopping time [s]."""
         return self.to_s - self.from_s
-
-    @property
-    def deceleration_mps2(self) -> float:
-        """Mean deceleration over the distance, v2 / 2 s [m/s2]."""
-        return (self.speed_kmh / 3.6) ** 2 / (2.0 * self.distance_m) if self.distance_m > 0.0 else float("nan")
 
 
 def stops_of(results: Results) -> list[Stop]:
@@ -50,4 +48,6 @@ def stops_of(results: Results) -> list[Stop]:
     told: list[Mapping[str, Any]] = results.run.get("stops") or []
     keys = ("braked_at_s", "stopped_at_s", "braked_at_m", "stopped_at_m", "braked_from_kmh")
     found = [[stop.get(key) for key in keys] for stop in told]
-    return [Stop(*map(float, values)) for values in found if None not in values]  # type: ignore[arg-type]
+    rates = [float("nan") if (rate := stop.get("mean_deceleration_mps2")) is None else float(rate) for stop in told]
+    every = zip(found, rates, strict=True)
+    return [Stop(*map(float, values), rate) for values, rate in every if None not in values]  # type: ignore[call-arg, arg-type]

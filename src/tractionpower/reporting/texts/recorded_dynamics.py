@@ -14,12 +14,12 @@ DEFINITIONS = (
     "greatest of all couplings and steps",
     "greatest of all couplings and steps: there was none",
     "most work that one coupling has taken in; what its springs hold at the end is part of it",
-    "greatest of the first vehicle, recorded rows",
-    "way of the first vehicle from the start to the end",
-    "of greatest magnitude of all vehicles, recorded rows",
-    "farthest that a vehicle has moved against the first since the start",
+    "greatest of the first vehicle and all steps, of either direction",
+    "how far the first vehicle is at the end from where it started",
+    "of greatest magnitude of all vehicles and steps, mean of a step",
+    "farthest that a vehicle has moved against the first since the start, of all steps",
     "way of the first vehicle from the brake command to the standstill of the whole train; time of the command",
-    "from the brake command to the standstill of the whole train, to the recorded row; time of the command",
+    "from the brake command to the standstill of the whole train, to the step; time of the command",
     "speed of the first vehicle at the brake command",
     "v²/(2 s) of the speed at the brake command and the stopping distance",
     "kinetic energy with rotating parts, end less start",
@@ -28,10 +28,16 @@ DEFINITIONS = (
 )
 """Definitions of key figures."""
 
-PLACES = ("coupling {coupling}", "vehicle {vehicle}", "stop {number}")
+PLACES = ("coupling {coupling}", "vehicle {vehicle}", "stop {number}", "{place}, backwards")
 """Where something was found."""
 
-NOTES = ("no cycles are counted: {reason}",)
+NOTES = (
+    "no cycles are counted: {reason}",
+    "the energy ledger leaves {share} of the energy put in, more than the {target} asked of {method}: lower tolerance of"
+    " {before} to {after}",
+    "the energy ledger leaves {share} of the energy put in, more than the {target} asked of {method}: shorten step_s of"
+    " {before} s to {after} s",
+)
 """Notes of a run."""
 
 OF_DYNAMICS: tuple[str, ...] = (*FIGURES, *DEFINITIONS, *PLACES, *NOTES)

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from tractionpower.reporting.facts.chain_data import ChainData
-from tractionpower.reporting.facts.chain_stops import stops_of
+from tractionpower.reporting.facts.chain_stops import Stop, stops_of
 from tractionpower.reporting.figures.base.style import INK, PAGE, STYLE, new_figure
 from tractionpower.reporting.figures.dynamics.panels import LINES, label, line, titled, told_value
 from tractionpower.reporting.figures.supply.panels import legend_below
@@ -32,13 +32,9 @@ def stopping(data: ChainData) -> Figure | None:
         axes = figure.add_subplot()
         for colour, stop in zip(LINES, shown, strict=False):
             rows = (data.times > stop.from_s) & (data.times <= stop.to_s)
-            words = tr(
-                "braked at {time} s: {distance} in {seconds} s, mean {deceleration}", time=number(stop.from_s),
-                distance=told_value(data, "distance", stop.distance_m), seconds=number(stop.time_s),
-                deceleration=told_value(data, "acceleration", stop.deceleration_mps2),
-            )  # fmt: skip
-            run = np.append(0.0, place[rows] - stop.from_m) * far
-            line(axes, run, np.append(stop.speed_kmh, speed[rows]) * fast, color=colour, label=words, linewidth=1.3)
+            words = _words(data, stop)
+            run = np.append(0.0, np.abs(place[rows] - stop.from_m)) * far
+            line(axes, run, np.append(stop.speed_kmh, np.abs(speed[rows])) * fast, color=colour, label=words, linewidth=1.3)
             end = stop.distance_m * far
             axes.plot([end], [0.0], "o", color=colour, markersize=4.5, clip_on=False, zorder=4)
             style: Any = {"textcoords": "offset points", "ha": "right", "va": "bottom", "color": INK, "fontsize": 7.5}
@@ -53,3 +49,15 @@ def stopping(data: ChainData) -> Figure | None:
         told = tr("stopping distance {distance} from {speed}", distance=told_value(data, "distance", longest.distance_m),
                   speed=told_value(data, "speed", longest.speed_kmh))  # fmt: skip
         return titled(figure, tr("stopping"), told)
+
+
+def _words(data: ChainData, stop: Stop) -> str:
+    """Return what the legend says of a stop."""
+    far, seconds, since = told_value(data, "distance", stop.distance_m), number(stop.time_s), number(stop.from_s)
+    if not np.isfinite(stop.deceleration_mps2):
+        return tr("braked at {time} s: {distance} in {seconds} s", time=since, distance=far, seconds=seconds)
+    rate = told_value(data, "acceleration", stop.deceleration_mps2)
+    return tr(
+        "braked at {time} s: {distance} in {seconds} s, mean {deceleration}",
+        time=since, distance=far, seconds=seconds, deceleration=rate,
+    )  # fmt: skip

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
-from tractionpower.reporting.facts.chain_stops import stops_of
+from tractionpower.reporting.facts.chain_stops import Stop, stops_of
 from tractionpower.reporting.texts import decimal, mark, number, tr, trn
 from tractionpower.reporting.workbook.common.cover_texts import Said, notes_of
 from tractionpower.reporting.workbook.dynamics.assumed import METHODS
@@ -52,14 +53,23 @@ def found(facts: ChainFacts) -> Iterator[Said]:
         yield tr("Couplings"), f"{text[:1].upper()}{text[1:]}.", "neutral"
     stops = stops_of(facts.results)
     for stop in stops[:MOST_STOPS]:
-        text = tr(
-            "{distance} m in {seconds} s from {speed} km/h, brake command at {time} s, mean deceleration {rate} m/s².",
-            distance=number(stop.distance_m), seconds=number(stop.time_s), speed=number(stop.speed_kmh),
-            time=number(stop.from_s, 2), rate=number(stop.deceleration_mps2, 3),
-        )  # fmt: skip
-        yield tr("Stop"), text, "neutral"
+        yield tr("Stop"), _told(stop), "neutral"
     if len(stops) > MOST_STOPS:
         yield "", tr("and {more} more", more=len(stops) - MOST_STOPS), "wrapped"
+
+
+def _told(stop: Stop) -> str:
+    far, speed = number(stop.distance_m), number(stop.speed_kmh)
+    seconds, since = number(stop.time_s), number(stop.from_s, 2)
+    if not math.isfinite(stop.deceleration_mps2):
+        return tr(
+            "{distance} m in {seconds} s from {speed} km/h, brake command at {time} s.",
+            distance=far, seconds=seconds, speed=speed, time=since,
+        )  # fmt: skip
+    return tr(
+        "{distance} m in {seconds} s from {speed} km/h, brake command at {time} s, mean deceleration {rate} m/s².",
+        distance=far, seconds=seconds, speed=speed, time=since, rate=number(stop.deceleration_mps2, 3),
+    )  # fmt: skip
 
 
 def trust(facts: ChainFacts) -> Iterator[Said]:
@@ -80,7 +90,12 @@ def trust(facts: ChainFacts) -> Iterator[Said]:
     if ledger:
         share = decimal(f"{100.0 * float(ledger.get('gap_share') or 0.0):.2g}")
         words = tr("Closes") if ledger.get("closes") else tr("Does not close")
-        text = tr("{word}: gap {share} % of the energy that was put in.", word=words, share=share)
+        limit = float(ledger.get("limit_share") or 0.0)
+        if limit:
+            text = tr("{word}: gap {share} % of the energy that was put in, limit {limit} %.", word=words, share=share,
+                      limit=decimal(f"{100.0 * limit:.2g}"))  # fmt: skip
+        else:
+            text = tr("{word}: gap {share} % of the energy that was put in.", word=words, share=share)
         yield tr("Energy ledger"), text, "good" if ledger.get("closes") else "bad"
     yield (
         tr("Proof"),

@@ -40,6 +40,7 @@ def add(book: Book) -> None:
         (tr("recorded rows"), run.get("recorded_rows"), "", "0"),
         (tr("gap of the energy ledger"), ledger.get("gap_kwh"), "kWh", "exponent"),
         (tr("gap by the energy that was put in"), ledger.get("gap_share"), "", "exponent"),
+        (tr("largest gap by the energy put in that closes"), ledger.get("limit_share"), "", "exponent"),
         (tr("judged by the program"), None if not ledger else tr(CLOSES) if ledger.get("closes") else tr(OPEN), "", "any"),
     ]
     known = [row for row in rows if row[1] is not None]
@@ -52,4 +53,10 @@ def add(book: Book) -> None:
         " order of the method."
     )
     page.next += 1
+    warnings = run.get("warnings") or []
+    if warnings:
+        page.section("Warnings")
+        for warning in warnings:
+            page.wrapped(recorded(str(warning)))
+        page.next += 1
     add_origin(page, facts)

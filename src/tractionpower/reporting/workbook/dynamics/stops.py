@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -33,7 +34,7 @@ def add(book: Book, drawn: Drawn) -> None:
         return
     page = book.page("Stops", "Stops: from the first brake command to standstill")
     page.note(
-        "Places and speeds are those of the first vehicle; the stop ends when the whole train stands, to the recorded row."
+        "Places and speeds are those of the first vehicle; the stop ends when the whole train stands, to the step."
         " A brake"
         " command is that of any brake: train, independent or electric. Distances, times and decelerations are formulas."
     )
@@ -43,11 +44,12 @@ def add(book: Book, drawn: Drawn) -> None:
 def _rows(stops: Sequence[Stop]) -> Iterator[tuple[Any, ...]]:
     for number, stop in enumerate(stops, 1):
         over_time = stop.speed_kmh / 3.6 / stop.time_s if stop.time_s > 0.0 else ""
-        over_distance = stop.deceleration_mps2 if stop.distance_m > 0.0 else ""
+        rate = stop.deceleration_mps2
+        has_rate = math.isfinite(rate)  # else the train stood at the command, or has rolled back since
         yield (
             number, stop.from_s, stop.from_m, stop.speed_kmh, stop.to_s, stop.to_m,
-            Formula("{to_m}-{from_m}", stop.distance_m),
+            Formula("ABS({to_m}-{from_m})", stop.distance_m),
             Formula("{to_s}-{from_s}", stop.time_s),
-            Formula('IF({distance}>0,({speed}/3.6)^2/(2*{distance}),"")', over_distance),
+            Formula('IF({distance}>0,({speed}/3.6)^2/(2*{distance}),"")', rate) if has_rate else None,
             Formula('IF({time}>0,{speed}/3.6/{time},"")', over_time),
         )  # fmt: skip
