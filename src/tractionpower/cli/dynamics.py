@@ -31,10 +31,6 @@ def _of_dynamics() -> None:
     pass
 
 
-app.command("drive")(drive.drive)
-app.command("check")(dynamics_check.check)
-
-
 @app.command("run")
 def run(
     case: CaseName,
@@ -103,3 +99,7 @@ def _show(outcome: Outcome, units: str) -> None:
         stations_summary.show(outcome.run, outcome.key_figures)
     else:
         dynamics_summary.show(outcome.run, outcome.key_figures, units)
+
+
+app.command("drive")(drive.drive)
+app.command("check")(dynamics_check.check)
