@@ -14,6 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from tractionpower.reporting.facts.chain_data import ChainData
+from tractionpower.reporting.texts import tr
 
 Array = NDArray[Any]
 
@@ -130,6 +131,11 @@ def joint_of(data: ChainData, which: str) -> Joint | None:
     share[share <= LEAST_SHARE] = np.nan
     spent = np.isfinite(share).any(axis=1)  # the last row of all lasts no time
     return Joint([int(each) for each in levels[spent]], share[spent], edges, of_rows=True)
+
+
+def counted_told(*, of_rows: bool) -> str:
+    """Return what a distribution was counted from."""
+    return tr("counted from the recorded rows") if of_rows else tr("counted in every step")
 
 
 def rows_of(data: ChainData, which: str) -> pd.DataFrame:

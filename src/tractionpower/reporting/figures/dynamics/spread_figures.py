@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tractionpower.dynamics.statistics import MEAN_N, RANGE_N
 from tractionpower.reporting.facts.chain_data import ChainData
-from tractionpower.reporting.facts.spread import histogram_of, joint_of
+from tractionpower.reporting.facts.spread import counted_told, histogram_of, joint_of
 from tractionpower.reporting.figures.base.style import BLUE, INK, PAGE, SMALLEST, STYLE, new_figure
 from tractionpower.reporting.figures.dynamics.panels import LINES, coupling_told, label, titled
 from tractionpower.reporting.figures.supply.panels import legend_below
@@ -79,11 +79,6 @@ def _joint(data: ChainData, which: str, words: str, title: str) -> Figure | None
 def level_told(data: ChainData, which: str, level: int) -> str:
     """Return what a level of a control is called: that beyond the last one of the brake is emergency."""
     return tr("emergency") if which == "brake_speed" and level > data.scenario.case.air_brake.levels else str(level)
-
-
-def counted_told(*, of_rows: bool) -> str:
-    """Return what a distribution was counted from."""
-    return tr("counted from the recorded rows") if of_rows else tr("counted in every step")
 
 
 def _write_shares(axes: Axes, edges: Array, share: Array) -> None:

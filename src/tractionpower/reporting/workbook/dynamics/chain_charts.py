@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,6 +13,9 @@ from tractionpower.reporting.workbook.frame.plots import COLOURS, DASHES, INK, T
 
 TIME = mark("time [s]")
 FORCE = mark("force [kN]")
+
+LITTLE_KMH = 0.05
+"""Below this a train that stops has rolled backwards by rounding alone."""
 
 
 @dataclass
@@ -25,11 +30,14 @@ class Drawn:
         Names of the vehicles and couplings that have columns there, by their number.
     most_loaded
         Number of the coupling with the greatest force.
+    force_unit
+        Unit of the classes of force.
     """
 
     blocks: dict[str, Block] = field(default_factory=dict)
     names: dict[str, dict[int, str]] = field(default_factory=dict)
     most_loaded: int = 0
+    force_unit: str = "kN"
 
 
 def draw_all(page: Page, drawn: Drawn) -> None:
@@ -40,7 +48,7 @@ def draw_all(page: Page, drawn: Drawn) -> None:
         _forces(page, drawn)
     if "extremes" in drawn.blocks:
         _extremes(page, drawn)
-    if "couplings" in drawn.blocks:
+    if "loop" in drawn.blocks:
         _loop(page, drawn)
     if "train" in drawn.blocks:
         _cylinders(page, drawn)
@@ -80,9 +88,40 @@ def _speeds(page: Page, drawn: Drawn) -> None:
     levels = scatter("", "", tr("control level"))
     for y, words, colour in (("drive", tr("drive control"), "777777"), ("brake", tr("brake control"), "CC79A7")):
         draw(levels, block, Line(words, "time", y, block.first, block.last, colour, "sysDash", THIN))
-    levels.y_axis.scaling.min = 0.0
+    _share_nothing(chart, levels, block, [f"speed{number}" for number in drawn.names["vehicles"]])
     second_axis(chart, levels)
     page.chart(chart)
+
+
+def _share_nothing(chart: Any, levels: Any, block: Block, speeds: Sequence[str]) -> None:
+    """Let nothing stand at one height on both vertical axes: at the bottom, or above it where the train rolled backwards."""
+    fastest, slowest = _ends(block, speeds)
+    most, _ = _ends(block, ["drive", "brake"])
+    high, step = _round_end(max(fastest, 1.0))
+    chart.y_axis.scaling.max, chart.y_axis.majorUnit = high, step
+    top = 2.0 * -(-most // 2.0) if most > 2.0 else 2.0
+    below = 0.0 if slowest > -LITTLE_KMH else -(slowest // step) * step
+    chart.y_axis.scaling.min = -below
+    levels.y_axis.scaling.max, levels.y_axis.scaling.min = top, -below / high * top
+
+
+def _ends(block: Block, keys: Sequence[str]) -> tuple[float, float]:
+    """Return the greatest and the least number in columns of a block."""
+    columns = [block.column(key) for key in keys]
+    found = (block.sheet.cell(row, column).value for row in range(block.first, block.last + 1) for column in columns)
+    values = [float(value) for value in found if value is not None]
+    return max(values, default=0.0), min(values, default=0.0)
+
+
+def _round_end(value: float) -> tuple[float, float]:
+    """Return a round number that is not below a value, and the distance of ticks up to it.
+
+    >>> _round_end(17.9), _round_end(60.0)
+    ((18.0, 2.0), (60.0, 10.0))
+    """
+    power = 10.0 ** math.floor(math.log10(value / 5.0))
+    step = power * next(each for each in (1.0, 2.0, 5.0, 10.0) if power * each * 10.0 >= value)
+    return step * math.ceil(value / step - 1e-9), step
 
 
 def _forces(page: Page, drawn: Drawn) -> None:
@@ -107,10 +146,10 @@ def _extremes(page: Page, drawn: Drawn) -> None:
 def _loop(page: Page, drawn: Drawn) -> None:
     name = drawn.names["couplings"][drawn.most_loaded]
     title = tr("Coupling {name}: force over deflection", name=name)
-    _begin(page, title, "The most loaded coupling; points of the extract, so that loops between them may show as straight lines.")
-    block = drawn.blocks["couplings"]
+    _begin(page, title, "The most loaded coupling: all recorded rows about its greatest force, one behind the other.")
+    block = drawn.blocks["loop"]
     chart = scatter(title, tr("deflection [mm]"), tr(FORCE), legend=False)
-    line = _line(block, name, f"force{drawn.most_loaded}", (0, "solid"), f"deflection{drawn.most_loaded}")
+    line = _line(block, name, "force", (0, "solid"), "deflection")
     draw(chart, block, line)
     chart.x_axis.tickLblPos = "low"
     page.chart(chart)
@@ -168,5 +207,5 @@ def _lines(page: Page, drawn: Drawn, title: str, words: str, lines: dict[str, st
 def _histogram(page: Page, drawn: Drawn) -> None:
     title = tr("Force of the first coupling: how often")
     _begin(page, title, "Share of the time in classes of force, by their lower end; tension is positive.")
-    words = tr("force, lower end of the class [kN]")
+    words = tr("force, lower end of the class [{unit}]", unit=drawn.force_unit)
     page.chart(bars(title, tr("share of the time [%]"), drawn.blocks["force"], "from", ("share",), x_title=words))

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from openpyxl.utils import get_column_letter
-
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.dynamics.chain_charts import Drawn
 from tractionpower.reporting.workbook.dynamics.chain_facts import facts_of
@@ -36,9 +34,6 @@ PARTS = (
 )
 """Parts of the ledger by their names in ``run.json``."""
 
-BESIDE_CM = 19.0
-"""Width of the chart beside the ledger."""
-
 GAP_DIGITS = 9
 """Digits of a kWh behind the point that a gap is told with."""
 
@@ -56,11 +51,9 @@ def add(book: Book, drawn: Drawn) -> None:
         " error are"
         " formulas. What was put in: traction, kinetic energy at the start, and what a descent gives."
     )
-    beside = page.next
     block = _ledger(page, ledger)
-    chart = bars(tr("Energies"), tr(ENERGY), block, WHAT, [ENERGY])
-    chart.width = BESIDE_CM
-    page.sheet.add_chart(chart, f"{get_column_letter(len(_COLUMNS) + 2)}{beside}")
+    page.new_page_for_chart()
+    page.chart(bars(tr("Energies"), tr(ENERGY), block, WHAT, [ENERGY]))
 
 
 def _ledger(page: Page, ledger: dict[str, Any]) -> Block:

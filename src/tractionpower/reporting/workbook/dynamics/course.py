@@ -13,7 +13,7 @@ from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.dynamics.chain_charts import TIME, Drawn
 from tractionpower.reporting.workbook.dynamics.chain_facts import facts_of
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.page import Column
+from tractionpower.reporting.workbook.frame.page import Column, Page
 from tractionpower.reporting.workbook.run.drawn import chosen
 
 Array = NDArray[Any]
@@ -23,6 +23,9 @@ MOST_ROWS = 600
 
 MOST_PEAKS = 450
 """Rows that the peaks of the force of one coupling get."""
+
+MOST_LOOP = 1200
+"""Consecutive rows of the loop of one coupling."""
 
 PRINTED = 22
 """Rows of an extract that are printed."""
@@ -63,6 +66,7 @@ def add(book: Book, drawn: Drawn) -> None:
 
 def _train(book: Book, data: ChainData, drawn: Drawn) -> None:
     page = book.page("Course of the train", "Extract: the train over time")
+    page.spread()
     count = len(data.times)
     kept = chosen(count, MOST_ROWS)
     page.note(
@@ -141,6 +145,34 @@ def _couplings(book: Book, data: ChainData, drawn: Drawn) -> None:
     drawn.blocks["couplings"] = page.table(columns, zip(*values, strict=True), frozen=True, printed=PRINTED)
     drawn.names["couplings"] = {number: data.couplings[number] for number in shown}
     drawn.most_loaded = data.most_loaded
+    _loop(page, data, times, drawn)
+
+
+def _loop(page: Page, data: ChainData, times: Array, drawn: Drawn) -> None:
+    """Write consecutive rows of the most loaded coupling about its greatest force: thinned ones would cut across its slack."""
+    number = data.most_loaded
+    force, deflection = data.of_couplings("force_kn")[:, number], data.of_couplings("deflection_mm")[:, number]
+    if not np.isfinite(force).any():
+        return
+    first, last = rows_about(force, MOST_LOOP)
+    page.section(tr("Coupling {name}: consecutive rows about its greatest force", name=data.couplings[number]))
+    columns = (
+        Column(TIME, "0.000", key="time"),
+        Column("force [kN]", "0.00", key="force"),
+        Column("deflection [mm]", "0.000", key="deflection"),
+    )
+    drawn.blocks["loop"] = page.table(columns, zip(times[first:last], force[first:last], deflection[first:last], strict=True))
+
+
+def rows_about(force: Array, most: int) -> tuple[int, int]:
+    """Return the first row, and that behind the last one, of so many consecutive rows about the greatest force.
+
+    >>> rows_about(np.array([0.0, 1.0, -5.0, 2.0, 0.0, 0.0]), 3)
+    (1, 4)
+    """
+    middle = int(np.nanargmax(np.abs(force)))
+    first = min(max(middle - most // 2, 0), max(len(force) - most, 0))
+    return first, min(first + most, len(force))
 
 
 def _times(data: ChainData) -> Array:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tractionpower.reporting.facts.chain_stops import Stop, stops_of
+from tractionpower.reporting.facts.measures import METRIC
 from tractionpower.reporting.texts import decimal, mark, number, tr, trn
 from tractionpower.reporting.workbook.common.cover_texts import Said, notes_of
 from tractionpower.reporting.workbook.dynamics.assumed import METHODS
@@ -17,8 +18,8 @@ MOST_STOPS = 4
 """Stops that the cover tells."""
 
 GREATEST = {
-    "tension": mark("Greatest tension {force} kN in coupling {name} at {time} s"),
-    "compression": mark("greatest compression {force} kN in coupling {name} at {time} s"),
+    "tension": mark("Greatest tension {force} in coupling {name} at {time} s"),
+    "compression": mark("greatest compression {force} in coupling {name} at {time} s"),
 }
 
 
@@ -34,8 +35,24 @@ def head(facts: ChainFacts) -> Iterator[Said]:
     end = float(facts.run.get("end_s") or case.run.duration_s)
     method = tr(METHODS[case.run.method], step=number(case.run.step_s, 6), tolerance=decimal(f"{case.run.tolerance:g}"))
     yield tr("What was computed"), f"{tr('{seconds} s of the journey.', seconds=number(end, 2))} {method}", "wrapped"
+    units = facts.data.units
+    if units is not METRIC:
+        shown = {key: (METRIC[key].unit, units[key].unit) for key in ("speed", "force", "deflection", "pressure")}
+        text = tr(
+            "Tables and charts of this workbook: {metric}. The case asks for {own}: so are the figures and the distributions,"
+            " and key figures and extremes are told in both.",
+            metric=", ".join(one for one, _ in shown.values()), own=", ".join(other for _, other in shown.values()),
+        )  # fmt: skip
+        yield tr("Units"), text, "wrapped"
     if case.source:
         yield tr("Case"), case.source, "wrapped"
+
+
+def _told(facts: ChainFacts, quantity: str, value: float, digits: int = 1) -> str:
+    """Return a value in the unit of the case, with that of the tables behind it where this is another."""
+    plain = f"{number(value, digits)} {METRIC[quantity].unit}"
+    own = facts.data.units[quantity]
+    return plain if own is METRIC[quantity] else f"{number(value * own.per, own.digits)} {own.unit} ({plain})"
 
 
 def found(facts: ChainFacts) -> Iterator[Said]:
@@ -47,28 +64,29 @@ def found(facts: ChainFacts) -> Iterator[Said]:
         if len(forces) and np.nanmax(forces) > 0.0:
             k = int(np.nanargmax(forces))
             at = number(float(extremes[f"{side}_at_s"].iloc[k]), 2)
-            told.append(tr(words, force=number(forces[k]), name=facts.data.couplings[k], time=at))
+            told.append(tr(words, force=_told(facts, "force", forces[k]), name=facts.data.couplings[k], time=at))
     if told:
         text = "; ".join(told)
         yield tr("Couplings"), f"{text[:1].upper()}{text[1:]}.", "neutral"
     stops = stops_of(facts.results)
     for stop in stops[:MOST_STOPS]:
-        yield tr("Stop"), _told(stop), "neutral"
+        yield tr("Stop"), _stop_told(facts, stop), "neutral"
     if len(stops) > MOST_STOPS:
         yield "", tr("and {more} more", more=len(stops) - MOST_STOPS), "wrapped"
 
 
-def _told(stop: Stop) -> str:
-    far, speed = number(stop.distance_m), number(stop.speed_kmh)
+def _stop_told(facts: ChainFacts, stop: Stop) -> str:
+    far, speed = _told(facts, "distance", stop.distance_m), _told(facts, "speed", stop.speed_kmh)
     seconds, since = number(stop.time_s), number(stop.from_s, 2)
     if not math.isfinite(stop.deceleration_mps2):
         return tr(
-            "{distance} m in {seconds} s from {speed} km/h, brake command at {time} s.",
+            "{distance} in {seconds} s from {speed}, brake command at {time} s.",
             distance=far, seconds=seconds, speed=speed, time=since,
         )  # fmt: skip
     return tr(
-        "{distance} m in {seconds} s from {speed} km/h, brake command at {time} s, mean deceleration {rate} m/s².",
-        distance=far, seconds=seconds, speed=speed, time=since, rate=number(stop.deceleration_mps2, 3),
+        "{distance} in {seconds} s from {speed}, brake command at {time} s, mean deceleration {rate}.",
+        distance=far, seconds=seconds, speed=speed, time=since,
+        rate=_told(facts, "acceleration", stop.deceleration_mps2, 3),
     )  # fmt: skip
 
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
-from tractionpower.reporting.facts.spread import LEAST_SHARE, joint_of, rows_of
+from tractionpower.reporting.facts.spread import counted_told, histogram_of, joint_of
 from tractionpower.reporting.texts import mark, number, tr
 from tractionpower.reporting.workbook.dynamics.chain_charts import Drawn
 from tractionpower.reporting.workbook.dynamics.chain_facts import facts_of
@@ -18,14 +16,14 @@ from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page
 
 JOINT = {
-    "drive_speed": mark("Drive control and speed of the first vehicle: share of the time [%], classes of speed [km/h]"),
-    "brake_speed": mark("Brake control and speed of the first vehicle: share of the time [%], classes of speed [km/h]"),
+    "drive_speed": mark("Drive control and speed of the first vehicle: share of the time [%], classes of speed [{unit}]"),
+    "brake_speed": mark("Brake control and speed of the first vehicle: share of the time [%], classes of speed [{unit}]"),
 }
 SINGLE = {
-    "coupler_force": ("force", mark("Force of the first coupling"), mark("from [kN]"), mark("to [kN]")),
-    "acceleration": ("acceleration", mark("Acceleration of the first vehicle"), mark("from [m/s²]"), mark("to [m/s²]")),
+    "coupler_force": ("force", mark("Force of the first coupling")),
+    "acceleration": ("acceleration", mark("Acceleration of the first vehicle")),
 }
-"""Key of the block, title, and headings of the classes."""
+"""Key of the block, which is the quantity as well, and title."""
 
 MOST_CLASSES = 40
 """Classes of speed that a table shows; of more the first."""
@@ -38,14 +36,15 @@ def add(book: Book, drawn: Drawn) -> None:
         return
     page = book.page("Distributions", "How often what came about")
     page.note(
-        "Shares of the whole time, summed up in every step. Levels and classes without any time are left out, classes at"
+        "Shares of the whole time. Levels and classes without any time are left out, classes at"
         " the ends alone; an end"
         " without a number is open. Sums are formulas and come to 100 %."
     )
     for which, title in JOINT.items():
         _joint(page, data, which, title)
     for which in SINGLE:
-        block = _single(page, rows_of(data, which), which)
+        block = _single(page, data, which)
+        drawn.force_unit = data.units["force"].unit
         if block is not None:
             drawn.blocks[SINGLE[which][0]] = block
 
@@ -54,42 +53,47 @@ def _joint(page: Page, data: Any, which: str, title: str) -> None:
     joint = joint_of(data, which)
     if joint is None:
         return
-    page.section(title)
+    page.section(tr(title, unit=data.units["speed"].unit))
+    page.note(counted_told(of_rows=joint.of_rows))
     shown = joint.share[:, :MOST_CLASSES]
     classes = [f"{number(low)}–{number(high)}" for low, high in zip(joint.edges[:-1], joint.edges[1:], strict=True)]
     keys = [f"class{k}" for k in range(shown.shape[1])]
-    columns = [Column("control level", "0"), *(Column(words, "0.00", key=key) for words, key in zip(classes, keys, strict=False))]
+    columns = [
+        Column("control level", "any"),
+        *(Column(words, "0.00", key=key) for words, key in zip(classes, keys, strict=False)),
+    ]
     columns.append(Column("sum [%]", "0.00", key="sum"))
     rows = []
-    for level, shares in enumerate(100.0 * np.nan_to_num(shown)):
-        if not shares.any():
-            continue
+    for level, shares in zip(joint.levels, 100.0 * np.nan_to_num(shown), strict=True):
         cells = [share or None for share in shares.tolist()]
-        rows.append((level, *cells, Formula(f"SUM({{{keys[0]}}}:{{{keys[-1]}}})", float(shares.sum()))))
+        told = tr("emergency") if which == "brake_speed" and level > data.scenario.case.air_brake.levels else level
+        rows.append((told, *cells, Formula(f"SUM({{{keys[0]}}}:{{{keys[-1]}}})", float(shares.sum()))))
     block = page.table(columns, rows)
     _sum(page, block, ["sum"], [100.0 * float(np.nansum(shown))])
 
 
-def _single(page: Page, rows: pd.DataFrame, which: str) -> Block | None:
-    _, title, low, high = SINGLE[which]
-    used = rows[rows["frequency"] > LEAST_SHARE] if len(rows) else rows
-    if used.empty:
+def _single(page: Page, data: Any, which: str) -> Block | None:
+    key, title = SINGLE[which]
+    found = histogram_of(data, which)
+    if found is None:
         return None
-    inner = rows.loc[used.index[0] : used.index[-1]]
     page.section(title)
+    page.note(counted_told(of_rows=found.of_rows))
+    unit = data.units[key].unit
     columns = (
-        Column(low, "general", key="from"),
-        Column(high, "general", key="to"),
+        Column(tr("from [{unit}]", unit=unit), "general", key="from"),
+        Column(tr("to [{unit}]", unit=unit), "general", key="to"),
         Column("share [%]", "0.000", key="share"),
         Column("share up to here [%]", "0.000", key="upto"),
     )
     first = page.next + 1
+    ends = [round(float(edge), 6) for edge in found.edges]
     told, upto = [], 0.0
-    for lowest, highest, frequency in inner[["lowest", "highest", "frequency"]].to_numpy(float).tolist():
-        share = 100.0 * frequency
+    for k, share in enumerate((100.0 * found.share).tolist()):
         upto += share
-        ends = [None if math.isnan(end) else round(end, 6) for end in (lowest, highest)]
-        told.append((*ends, share, Formula(f"SUM(C{first}:{{share}})", upto)))
+        low = None if found.open_low and k == 0 else ends[k]
+        high = None if found.open_high and k == len(found.share) - 1 else ends[k + 1]
+        told.append((low, high, share, Formula(f"SUM(C{first}:{{share}})", upto)))
     block = page.table(columns, told)
     _sum(page, block, ["share"], [upto])
     return block

@@ -135,6 +135,7 @@ class Page:
         self._last_printed: int | None = None
         self._longest_line = 0.0
         self._loose: list[int] = []
+        self._spread = False
         self._set_up()
         self.line(self.title, "title")
         self.sheet.row_dimensions[1].height = 24.0
@@ -234,6 +235,10 @@ class Page:
         self.next += rows
         return self.next - rows
 
+    def spread(self) -> None:
+        """Let a sheet that is too wide for A4 go over several pages beside each other, rather than have small letters."""
+        self._spread = True
+
     def new_page(self) -> None:
         """Let what follows begin on a page of its own when it is printed."""
         self.sheet.row_breaks.append(Break(id=self.next - 1))
@@ -250,9 +255,9 @@ class Page:
         width = sum(needed + PADDING for needed in self._needed.values())
         paper = self.book.report.paper
         if paper == "fit":
-            paper = "a3" if width > WIDE else "a4"
+            paper = "a3" if width > WIDE and not self._spread else "a4"
         sheet.page_setup.paperSize = sheet.PAPERSIZE_A3 if paper == "a3" else sheet.PAPERSIZE_A4
-        sheet.page_setup.fitToWidth = max(1, math.ceil(width / MOST_WIDE[paper]))
+        sheet.page_setup.fitToWidth = max(1, math.ceil(width / (WIDE if self._spread and paper == "a4" else MOST_WIDE[paper])))
         rows = self.next if self._last_printed is None else self._last_printed
         if paper == "a4" and rows > LONG_SHEET and width <= LONG_WIDE and not sheet._charts:
             sheet.sheet_properties.pageSetUpPr.fitToPage, sheet.page_setup.scale = False, LONG_SCALE
