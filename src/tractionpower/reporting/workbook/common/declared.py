@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import types
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -64,7 +65,7 @@ class Declared:
     @property
     def shown(self) -> Any:
         """What a cell shows: a number as it is, all else in words."""
-        return self.value if _is_number(self.value) else in_words(self.value, self.words)
+        return readable(self.name, self.value) if _is_number(self.value) else in_words(self.value, self.words)
 
 
 def declared(part: BaseModel) -> list[Declared]:
@@ -78,6 +79,20 @@ def declared(part: BaseModel) -> list[Declared]:
             value, usual = text, _as_written(part, attribute, default)
         found.append(Declared(name, value, usual, meaning, source, words))
     return found
+
+
+def readable(name: str, value: Any) -> Any:
+    """Return a number without digits that come from converting units alone; all else as it is.
+
+    Seven digits are kept and the third decimal at least, of kilometres and degrees the sixth.
+
+    >>> readable("from_m", 820.4000000000001), readable("radius_m", 1746.397525437186), readable("km", 12.3456781)
+    (820.4, 1746.398, 12.345678)
+    """
+    if not isinstance(value, float) or not math.isfinite(value) or value == 0.0:
+        return value
+    least = 6 if name == "km" or name.endswith(("_km", "_deg")) else 3
+    return round(value, max(least, 6 - math.floor(math.log10(abs(value)))))
 
 
 def flat(part: BaseModel, before: str = "") -> Iterator[tuple[str, Declared]]:

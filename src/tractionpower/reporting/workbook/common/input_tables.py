@@ -9,7 +9,7 @@ from pydantic import BaseModel
 
 from tractionpower.model.base import Declaration
 from tractionpower.reporting.texts import recorded, tr
-from tractionpower.reporting.workbook.common.declared import Declared, declared, flat, in_words, words_of
+from tractionpower.reporting.workbook.common.declared import Declared, declared, flat, in_words, readable, words_of
 from tractionpower.reporting.workbook.frame.facts import KNOWN_AS
 from tractionpower.reporting.workbook.frame.page import Block, Column, Page, heading_of
 
@@ -117,7 +117,7 @@ def _columns(
             values.append(plain)
         elif all(value is None or (isinstance(value, float | int) and not isinstance(value, bool)) for value in given):
             columns.append(Column(heading_of(name), "general"))
-            values.append(given)
+            values.append([readable(name, value) for value in given])
         else:
             columns.append(Column(heading_of(name), "beside" if columns else "text", _WIDE.get(name, 40)))
             values.append([row[k].shown for row in fields])

@@ -146,7 +146,11 @@ def _extremes(page: Page, drawn: Drawn) -> None:
 def _loop(page: Page, drawn: Drawn) -> None:
     name = drawn.names["couplings"][drawn.most_loaded]
     title = tr("Coupling {name}: force over deflection", name=name)
-    _begin(page, title, "The most loaded coupling: all recorded rows about its greatest force, one behind the other.")
+    _begin(
+        page,
+        title,
+        "The most loaded coupling: its recorded rows one behind the other, without those that lie close to the last one.",
+    )
     block = drawn.blocks["loop"]
     chart = scatter(title, tr("deflection [mm]"), tr(FORCE), legend=False)
     line = _line(block, name, "force", (0, "solid"), "deflection")

@@ -36,23 +36,17 @@ def add(book: Book) -> None:
     )
     units = book.subject.data.units if isinstance(book.subject, ChainFacts) else METRIC
     both = units is not METRIC
-    page.table(
-        (*_VALUE, *(_OWN if both else ()), *_WHERE), [_row(figure, units if both else None) for figure in figures], frozen=True
-    )
+    columns = (*_VALUE, *(_OWN if both else ()), *_WHERE)
+    page.table(columns, [_row(figure, units if both else None) for figure in figures], frozen=True)
 
 
 def _row(figure: dict[str, Any], units: Mapping[str, Measure] | None) -> tuple[Any, ...]:
     """Return the row of a figure; `units`: those of a case that has others than the tables."""
     unit = str(figure.get("unit", ""))
-    own: tuple[Any, ...] = ()
-    if units is not None:
-        measure = units.get(QUANTITIES.get(unit, ""))
-        other = measure is not None and measure.unit != unit and figure["value"] is not None
-        own = (
-            (Formula(f"{{value}}*{measure.per:.12g}", figure["value"] * measure.per), measure.unit)
-            if measure and other
-            else (None, "")
-        )
+    own: tuple[Any, ...] = () if units is None else (None, "")
+    measure = (units or {}).get(QUANTITIES.get(unit, ""))
+    if measure is not None and measure.unit != unit and figure["value"] is not None:
+        own = Formula(f"{{value}}*{measure.per:.12g}", figure["value"] * measure.per), measure.unit
     return (
         heading_of(str(figure["name"])).split(" [")[0],
         figure["value"],

@@ -24,8 +24,8 @@ MOST_ROWS = 600
 MOST_PEAKS = 450
 """Rows that the peaks of the force of one coupling get."""
 
-MOST_LOOP = 1200
-"""Consecutive rows of the loop of one coupling."""
+MOST_LOOP, LEAST_STEP = 2500, 0.002
+"""Rows of the loop of one coupling, and how far apart they are: a part of the ranges of force and deflection."""
 
 PRINTED = 22
 """Rows of an extract that are printed."""
@@ -149,30 +149,41 @@ def _couplings(book: Book, data: ChainData, drawn: Drawn) -> None:
 
 
 def _loop(page: Page, data: ChainData, times: Array, drawn: Drawn) -> None:
-    """Write consecutive rows of the most loaded coupling about its greatest force: thinned ones would cut across its slack."""
+    """Write the loop of the most loaded coupling: rows that only keep its peaks would cut across its slack."""
     number = data.most_loaded
     force, deflection = data.of_couplings("force_kn")[:, number], data.of_couplings("deflection_mm")[:, number]
-    if not np.isfinite(force).any():
+    if not (np.isfinite(force) & np.isfinite(deflection)).all():
         return
-    first, last = rows_about(force, MOST_LOOP)
-    page.section(tr("Coupling {name}: consecutive rows about its greatest force", name=data.couplings[number]))
+    kept = along_the_path(deflection, force, MOST_LOOP)
+    page.section(tr("Coupling {name}: force over deflection, row by row", name=data.couplings[number]))
     columns = (
         Column(TIME, "0.000", key="time"),
         Column("force [kN]", "0.00", key="force"),
         Column("deflection [mm]", "0.000", key="deflection"),
     )
-    drawn.blocks["loop"] = page.table(columns, zip(times[first:last], force[first:last], deflection[first:last], strict=True))
+    rows = zip(times[kept], force[kept], deflection[kept], strict=True)
+    drawn.blocks["loop"] = page.table(columns, rows)
 
 
-def rows_about(force: Array, most: int) -> tuple[int, int]:
-    """Return the first row, and that behind the last one, of so many consecutive rows about the greatest force.
+def along_the_path(x: Array, y: Array, most: int) -> NDArray[np.intp]:
+    """Return the numbers of at most some `most` points whose line follows that of all points, corners and all.
 
-    >>> rows_about(np.array([0.0, 1.0, -5.0, 2.0, 0.0, 0.0]), 3)
-    (1, 4)
+    A point is kept where it is farther from the last one kept than a small part of both ranges, with the one before it.
+
+    >>> along_the_path(np.array([0.0, 1e-6, 2e-6, 1.0, 1.0]), np.array([0.0, 0.0, 0.0, 0.0, 5.0]), 10).tolist()
+    [0, 2, 3, 4]
     """
-    middle = int(np.nanargmax(np.abs(force)))
-    first = min(max(middle - most // 2, 0), max(len(force) - most, 0))
-    return first, min(first + most, len(force))
+    xs, ys = (values / max(float(np.ptp(values)), 1e-12) for values in (x, y))
+    near = LEAST_STEP
+    while True:
+        kept, last = [0], 0
+        for k in range(1, len(xs)):
+            if abs(xs[k] - xs[last]) > near or abs(ys[k] - ys[last]) > near:
+                kept += [k - 1, k] if k - 1 > last else [k]
+                last = k
+        if len(kept) <= most or near >= 1.0:
+            return np.array([*dict.fromkeys([*kept, len(xs) - 1])], np.intp)
+        near *= 2.0
 
 
 def _times(data: ChainData) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from openpyxl.utils import get_column_letter
 
 from tractionpower.model.dynamics.coupling import Coupling
+from tractionpower.reporting.facts.measures import METRIC
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.common.accepted import accepted_of, cell_names
 from tractionpower.reporting.workbook.common.verdicts import same_as
@@ -25,7 +26,7 @@ GROUP = mark("Couplings")
 """Group of the rows of the sheet of acceptance."""
 
 _KINDS = (
-    Column("kind of coupling", widest=26, key="kind"),
+    Column("kind of coupling", widest=18, key="kind"),
     Column("how many", "0", key="count"),
     Column("greatest tension [kN]", "0.0", key="tension"),
     Column("tension at coupling", "beside", key="tension_at"),
@@ -38,7 +39,7 @@ _KINDS = (
     Column("work taken in [kJ]", "0.0", key="absorbed"),
 )
 _COUPLINGS = (
-    Column("vehicles", widest=26, key="name"),
+    Column("vehicles", widest=18, key="name"),
     Column("no.", "0", key="number"),
     Column("greatest tension [kN]", "0.0", key="tension"),
     Column("tension at [s]", "0.00"),
@@ -49,9 +50,8 @@ _COUPLINGS = (
     Column("work taken in [kJ]", "0.00", key="absorbed"),
     Column("of it by the damper [kJ]", "0.00"),
     Column("damage, relative", "0.0000"),
-    Column("kind of coupling", "beside", widest=26, key="kind"),
-    Column("between", "beside", widest=40),
 )
+_WHICH = (Column("kind of coupling", "beside", widest=18, key="kind"), Column("between", "beside", widest=24))
 
 FULL_PERCENT = 100.0
 
@@ -75,7 +75,7 @@ def add(book: Book, drawn: Drawn) -> None:
     page.next = top + len(kinds) + 2
     page.section("Couplings from the front of the train")
     rows = list(_rows(facts, top + 1))
-    block = page.table(_COUPLINGS, rows)
+    block = page.table((*_COUPLINGS, *_own_columns(facts), *_WHICH), rows)
     after, page.next = page.next, top
     whole = page.table(_KINDS, list(_kind_rows(facts, kinds, block, rows)))
     page.next = after
@@ -103,8 +103,24 @@ def _rows(facts: ChainFacts, first_kind: int) -> Iterator[tuple[Any, ...]]:
         yield (
             str(row["coupling"]), k + 1, row["greatest_tension_kn"], row["tension_at_s"], used["tension"],
             row["greatest_compression_kn"], row["compression_at_s"], used["compression"], row["absorbed_kj"],
-            row.get("damper_kj"), row["damage"], None if kind is None else kind.id, between,
+            row.get("damper_kj"), row["damage"], *_own_units(facts, row), None if kind is None else kind.id, between,
         )  # fmt: skip
+
+
+def _own_columns(facts: ChainFacts) -> tuple[Column, ...]:
+    """Return columns of the forces in the unit of the case, where that is another than that of the tables."""
+    unit = facts.data.units["force"].unit
+    if unit == METRIC["force"].unit:
+        return ()
+    words = {"tension": mark("tension [{unit}]"), "compression": mark("compression [{unit}]")}
+    return tuple(Column(tr(words[side], unit=unit), "0.0", key=f"own_{side}") for side in SIDES)
+
+
+def _own_units(facts: ChainFacts, row: Mapping[Any, Any]) -> tuple[Formula, ...]:
+    """Return what stands there."""
+    per = facts.data.units["force"].per
+    sides = SIDES if _own_columns(facts) else ()
+    return tuple(Formula(f"{{{side}}}*{per:.12g}", float(row[f"greatest_{side}_kn"]) * per) for side in sides)
 
 
 def _used(found: str, limit: str, value: float, known: float | None) -> Formula:

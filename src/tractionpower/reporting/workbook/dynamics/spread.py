@@ -58,10 +58,8 @@ def _joint(page: Page, data: Any, which: str, title: str) -> None:
     shown = joint.share[:, :MOST_CLASSES]
     classes = [f"{number(low)}–{number(high)}" for low, high in zip(joint.edges[:-1], joint.edges[1:], strict=True)]
     keys = [f"class{k}" for k in range(shown.shape[1])]
-    columns = [
-        Column("control level", "any"),
-        *(Column(words, "0.00", key=key) for words, key in zip(classes, keys, strict=False)),
-    ]
+    columns = [Column("control level", "any")]
+    columns += [Column(words, "0.00", key=key) for words, key in zip(classes, keys, strict=False)]
     columns.append(Column("sum [%]", "0.00", key="sum"))
     rows = []
     for level, shares in zip(joint.levels, 100.0 * np.nan_to_num(shown), strict=True):
