@@ -75,8 +75,17 @@ def test_the_summary_says_what_the_results_hold(case, capsys):
     results = Results.open("reports/dynamics-short")
     line = next(line for line in told.splitlines() if line.startswith("greatest tension"))
     assert f"{results.key_figure('greatest_tension_kn'):.1f}" in line.split()
+    assert "0.0001 % is the limit for symplectic" in told
     line = next(line for line in told.splitlines() if line.startswith("stopping distance"))
     assert f"{results.key_figure('stopping_distance_m'):.2f}" in line.split()
+
+
+def test_what_reading_has_found_is_kept_with_the_results(capsys):
+    assert run("arshad", "--set", "case.run.duration_s=2") == 0
+    told = " ".join(capsys.readouterr().err.split())
+    kept = Results.open("reports/dynamics-arshad").run["warnings"]
+    assert [warning for warning in kept if "state vector" in warning.lower()], kept
+    assert told.lower().count("state vector size") == 1, "told once"
 
 
 def test_method_and_step_come_from_the_options(case):

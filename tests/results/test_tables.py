@@ -12,7 +12,8 @@ def test_every_column_has_a_meaning_and_its_unit_in_its_name(table):
     for field in schema_of(table):
         unit = field.metadata[b"unit"].decode()
         assert field.metadata[b"meaning"].decode().endswith(".")
-        spelled = {"km/h": "kmh", "m/s²": "mps2", "%": "percent"}.get(unit, unit.lower().replace("/", "_per_").replace(" ", ""))
+        short = {"km/h": "kmh", "m/s²": "mps2", "m/s": "mps", "%": "percent"}
+        spelled = short.get(unit, unit.lower().replace("/", "_per_").replace(" ", ""))
         assert f"_{field.name}".endswith(f"_{spelled}") or unit in {"", "-", "km"}
 
 

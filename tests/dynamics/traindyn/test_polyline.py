@@ -70,3 +70,20 @@ def test_where_a_train_is():
     train = DynTrain("x", route=(a,), place_m=120.0)
     train.extend_route(b)
     assert (train.location, train.route_m) == ((b, 20.0), 150.0)
+
+
+@pytest.mark.parametrize("given", ["x", 3, None, [Polyline.straight("a", 100.0), "b"]])
+def test_what_is_no_polyline_is_refused_before_anything_is_added(given):
+    core = TrainDynamics()
+    for add in (lambda: core.add_arc(given, 300.0), lambda: core.add_inclination(given, 5.0), lambda: core.add_tunnel(given)):
+        with pytest.raises(UsageError, match="allowed: a Polyline"):
+            add()
+    assert resistance_at(core, (Polyline.straight("a", 100.0),), [50.0]) == pytest.approx([0.0])
+
+
+def test_of_several_polylines_none_is_added_where_one_is_too_short():
+    long, short = Polyline.straight("a", 100.0), Polyline.straight("b", 10.0)
+    core = TrainDynamics()
+    with pytest.raises(UsageError, match="is not on 'b'"):
+        core.add_arc([long, short], 300.0, between_m=(0.0, 50.0))
+    assert resistance_at(core, (long,), [25.0]) == pytest.approx([0.0])

@@ -49,12 +49,21 @@ def test_places_masses_and_lengths(read):
 def test_rows_in_any_order_and_imperial_units(read):
     consist, problems = read(f"{HEAD}2,40,Gondola,100,30,50,4,,\n{LOCO}")
     assert problems == []
-    assert [vehicle["id"] for vehicle in consist.vehicles] == ["locomotive-1", "gondola-2"]
+    assert [vehicle["id"] for vehicle in consist.vehicles] == ["locomotive", "gondola"]
     assert consist.vehicles[1]["mass_t"] == pytest.approx(30 * 0.90718474)
     assert consist.vehicles[1]["load_t"] == pytest.approx(100 * 0.90718474)
     assert consist.length_m == pytest.approx(2060 * 0.3048)
     assert consist.parts[0]["traction"]["starting_effort_kn"] == pytest.approx(266.893, abs=1e-3)
     assert consist.parts[0]["traction"]["power_kw"] == pytest.approx(2237.1, abs=0.1)
+
+
+def test_rows_of_one_type_have_letters_and_no_number_that_looks_like_a_place(read):
+    tank = "{},{},Tank Car,100,30,50,4,,\n"
+    consist, problems = read(HEAD + LOCO + tank.format(2, 3) + "5,1,Gondola,0,30,50,4,,\n" + tank.format(6, 2))
+    assert problems == []
+    names = ["locomotive", "tank-car-a", "gondola", "tank-car-b"]
+    assert [vehicle["id"] for vehicle in consist.vehicles] == names
+    assert [part["id"] for part in consist.parts] == names
 
 
 @pytest.mark.parametrize(("lading", "drag"), [(100.0, 4.2), (0.0, 12.0)])

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import hypot
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,11 +90,13 @@ class TrackData:
     def add(self, polylines: Polyline | Iterable[Polyline], n_per_n: float, between_m: tuple[float, float] | None, *,
             is_slope: bool = False) -> None:  # fmt: skip
         """Add a resistance over weight [N/N] to the whole of some polylines, or to what lies between two distances on one."""
-        pieces = [polylines] if isinstance(polylines, Polyline) else list(polylines)
-        for piece in pieces:
+        pieces = _pieces(polylines)
+        for piece in pieces:  # all are looked at before the first is added
             low, high = (0.0, piece.length_m) if between_m is None else between_m
             if not 0.0 <= low < high <= piece.length_m:
                 raise UsageError(f"from {low} m to {high} m is not on {piece.name!r}, which is {piece.length_m:g} m long")
+        for piece in pieces:
+            low, high = (0.0, piece.length_m) if between_m is None else between_m
             if piece.is_reversed:
                 low, high = piece.length_m - high, piece.length_m - low
             rows = (self.slopes if is_slope else self.level).setdefault(piece.name, [])
@@ -112,3 +115,13 @@ class TrackData:
         edges = sorted({edge for low, high, _ in rows for edge in (low, high)})
         sums = [(edge, sum(worth for low, high, worth in rows if low <= edge < high)) for edge in edges]
         return np.array(sums, SECTION)
+
+
+def _pieces(polylines: object) -> list[Polyline]:
+    """Return polylines as a list; what is none is refused."""
+    several = isinstance(polylines, Iterable) and not isinstance(polylines, str)
+    pieces: list[Any] = list(polylines) if several else [polylines]  # type: ignore[call-overload]
+    for piece in pieces:
+        if not isinstance(piece, Polyline):
+            raise UsageError(f"found {piece!r}; allowed: a Polyline, or several, such as Polyline.straight(name, length_m)")
+    return pieces

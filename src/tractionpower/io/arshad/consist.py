@@ -102,9 +102,10 @@ def read_consist(reader: Reader, source: Source, settings: Settings) -> Consist 
     mark = Mark(source.label, 0, {k: Mark(source.label, cells.line) for k, (cells, _) in enumerate(rows)})
     kinds = [_kind(cells) for cells, _ in rows]
     counts = [int(value["number"]) for _, value in rows]
+    names = _names(rows)
     return Consist(
-        [_vehicle(cells, value, settings) for cells, value in rows],
-        [_part(cells, value, settings) for cells, value in rows],
+        [_vehicle(name, cells, value, settings) for name, (cells, value) in zip(names, rows, strict=True)],
+        [_part(name, cells, value, settings) for name, (cells, value) in zip(names, rows, strict=True)],
         mark,
         sum(value["length"] * value["number"] for _, value in rows),
         sum(count for kind, count in zip(kinds, counts, strict=True) if kind != LOCOMOTIVE),
@@ -156,14 +157,31 @@ def _kind(cells: Cells) -> str:
     return _TYPES[cells.texts["type"].lower()]
 
 
-def _name(cells: Cells, values: dict[str, float]) -> str:
-    return f"{cells.texts['type'].lower().replace(' ', '-')}-{int(values['position'])}"
+def _names(rows: list[tuple[Cells, dict[str, float]]]) -> list[str]:
+    """Return what the vehicles of the rows are called: their type, with a letter where several rows have it.
+
+    A number would be taken for the place of the vehicle in the train, which stands before its name in all results.
+    """
+    words = [cells.texts["type"].lower().replace(" ", "-") for cells, _ in rows]
+    names = []
+    for k, word in enumerate(words):
+        names.append(f"{word}-{_letters(words[:k].count(word))}" if words.count(word) > 1 else word)
+    return names
 
 
-def _vehicle(cells: Cells, values: dict[str, float], settings: Settings) -> dict[str, Any]:
+def _letters(place: int) -> str:
+    """Return a letter for a place, counted from 0; two behind the 26th.
+
+    >>> _letters(0), _letters(25), _letters(26)
+    ('a', 'z', 'aa')
+    """
+    return (_letters(place // 26 - 1) if place >= 26 else "") + chr(ord("a") + place % 26)
+
+
+def _vehicle(name: str, cells: Cells, values: dict[str, float], settings: Settings) -> dict[str, Any]:
     is_locomotive = _kind(cells) == LOCOMOTIVE
     vehicle: dict[str, Any] = {
-        "id": _name(cells, values),
+        "id": name,
         "name": cells.texts["type"],
         "kind": _kind(cells),
         "mass_t": values["tare"],
@@ -192,8 +210,8 @@ def _resistance(values: dict[str, float], settings: Settings, *, is_locomotive: 
     }
 
 
-def _part(cells: Cells, values: dict[str, float], settings: Settings) -> dict[str, Any]:
-    part: dict[str, Any] = {"id": _name(cells, values), "count": int(values["number"]), "load_percent": 100.0}
+def _part(name: str, cells: Cells, values: dict[str, float], settings: Settings) -> dict[str, Any]:
+    part: dict[str, Any] = {"id": name, "count": int(values["number"]), "load_percent": 100.0}
     if _kind(cells) == LOCOMOTIVE:
         part["traction"] = {
             "levels": int(settings.number("notches")),

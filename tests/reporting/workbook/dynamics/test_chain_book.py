@@ -71,6 +71,16 @@ def test_a_force_beyond_its_limit_is_violated(tmp_path):
     assert max(row["used of endurable tension [%]"] for row in read_table(book["Coupling forces"])) > 100.0
 
 
+def test_warnings_of_the_run_are_evidence(tmp_path):
+    results = fake_results(tmp_path / "run")
+    warning = "warning: case.run.record_every_s: every 2nd step is recorded"
+    results.run["warnings"] = [warning]
+    book = load_workbook(write_workbook(results, fake_scenario(), tmp_path / "report.xlsx"), data_only=True)
+    assert warning in texts(book["Solver evidence"])
+    rows = {row[0].value: row[1].value for row in book["Solver evidence"].iter_rows(max_col=2)}
+    assert rows["largest gap by the energy put in that closes"] == 1e-6
+
+
 def test_stops_and_energies_are_those_of_the_run(book, results):
     (stop,) = read_table(book["Stops"])
     for heading, name in (("stopping distance [m]", "stopping_distance_m"), ("stopping time [s]", "stopping_time_s"),
