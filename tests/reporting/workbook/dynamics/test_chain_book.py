@@ -81,6 +81,20 @@ def test_warnings_of_the_run_are_evidence(tmp_path):
     assert rows["largest gap by the energy put in that closes"] == 1e-6
 
 
+def test_a_stop_backwards_has_magnitudes_and_is_told(tmp_path):
+    results = fake_results(tmp_path / "run")
+    (stop,) = results.run["stops"]
+    results.run["stops"] = [
+        stop | {"braked_at_m": 100.0, "stopped_at_m": 90.0, "stopping_distance_m": 10.0, "mean_deceleration_mps2": None}
+    ]
+    book = load_workbook(write_workbook(results, fake_scenario(), tmp_path / "report.xlsx"), data_only=True)
+    (row,) = read_table(book["Stops"])
+    assert row["stopping distance [m]"] == 10.0
+    assert row["mean deceleration over the distance, v²/2s [m/s²]"] is None
+    assert "Stop, backwards" in texts(book["Cover"])
+    assert not [text for text in texts(book["Cover"]) if "nan" in text.split()]
+
+
 def test_stops_and_energies_are_those_of_the_run(book, results):
     (stop,) = read_table(book["Stops"])
     for heading, name in (("stopping distance [m]", "stopping_distance_m"), ("stopping time [s]", "stopping_time_s"),

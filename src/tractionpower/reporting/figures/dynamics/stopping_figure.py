@@ -33,8 +33,9 @@ def stopping(data: ChainData) -> Figure | None:
         for colour, stop in zip(LINES, shown, strict=False):
             rows = (data.times > stop.from_s) & (data.times <= stop.to_s)
             words = _words(data, stop)
-            run = np.append(0.0, np.abs(place[rows] - stop.from_m)) * far
-            line(axes, run, np.append(stop.speed_kmh, np.abs(speed[rows])) * fast, color=colour, label=words, linewidth=1.3)
+            run = np.concatenate([[0.0], np.abs(place[rows] - stop.from_m), [stop.distance_m]]) * far
+            fall = np.concatenate([[stop.speed_kmh], np.abs(speed[rows]), [0.0]]) * fast
+            line(axes, run, fall, color=colour, label=words, linewidth=1.3)
             end = stop.distance_m * far
             axes.plot([end], [0.0], "o", color=colour, markersize=4.5, clip_on=False, zorder=4)
             style: Any = {"textcoords": "offset points", "ha": "right", "va": "bottom", "color": INK, "fontsize": 7.5}

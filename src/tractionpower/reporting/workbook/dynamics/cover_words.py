@@ -70,7 +70,7 @@ def found(facts: ChainFacts) -> Iterator[Said]:
         yield tr("Couplings"), f"{text[:1].upper()}{text[1:]}.", "neutral"
     stops = stops_of(facts.results)
     for stop in stops[:MOST_STOPS]:
-        yield tr("Stop"), _stop_told(facts, stop), "neutral"
+        yield tr("Stop") if stop.to_m >= stop.from_m else tr("Stop, backwards"), _stop_told(facts, stop), "neutral"
     if len(stops) > MOST_STOPS:
         yield "", tr("and {more} more", more=len(stops) - MOST_STOPS), "wrapped"
 
