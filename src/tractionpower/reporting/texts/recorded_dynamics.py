@@ -40,5 +40,19 @@ NOTES = (
 )
 """Notes of a run."""
 
-OF_DYNAMICS: tuple[str, ...] = (*FIGURES, *DEFINITIONS, *PLACES, *NOTES)
+OF_STATIONS = (
+    "trains that left", "trains still there", "trains that did not come", "highest speed", "waiting time", "mean running time",
+    "trains that have run the whole line",
+    "trains on the line at the end of the run",
+    "trains that the line, or the time, had no room for",
+    "highest speed of all rows",
+    "time that trains waited for a track or the line ahead",
+    "mean time from entering to leaving, stops included",
+    "trains still on the line at the end: {count}",
+    "trains still on the line at the end: {count} ({names} cannot start)",
+    "trains that did not come onto the line: {count}",
+)  # fmt: skip
+"""Key figures of cases of stations with their definitions, and notes."""
+
+OF_DYNAMICS: tuple[str, ...] = (*FIGURES, *DEFINITIONS, *PLACES, *NOTES, *OF_STATIONS)
 """All of them."""

@@ -17,6 +17,8 @@ from tractionpower.model.contingency import OUTAGE_KINDS, Contingency
 from tractionpower.model.dynamics.case import Case, CaseRun, CaseStart, CaseTrack, DynamicsScenario
 from tractionpower.model.dynamics.coupling import Coupling, Gear, Wedge
 from tractionpower.model.dynamics.gear import AirBrake, BlockFriction, BrakeGear, ElectricBrake, Traction
+from tractionpower.model.dynamics.point_mass import SpecificResistance, TrainCharacteristics
+from tractionpower.model.dynamics.stations import StationsCase, StationsRun, Traffic, TrainKind
 from tractionpower.model.feasibility import Feasibility
 from tractionpower.model.quantity import Quantity
 from tractionpower.model.remedies import RemedyCosts, RemedySearch
@@ -54,6 +56,12 @@ SETTINGS = (
     Coupling,
     Gear,
     Wedge,
+    StationsCase,
+    StationsRun,
+    Traffic,
+    TrainKind,
+    TrainCharacteristics,
+    SpecificResistance,
 )
 """Declarations of which reports tell the meaning of every field."""
 
@@ -115,7 +123,7 @@ def _of_figures() -> Iterator[str]:
 def _of_declarations() -> Iterator[str]:
     """Yield names, meanings, sources of defaults and words of the fields of all inputs."""
     known: set[type[BaseModel]] = set()
-    left: list[type[BaseModel]] = [Scenario, StudyFile, DynamicsScenario]
+    left: list[type[BaseModel]] = [Scenario, StudyFile, DynamicsScenario, StationsCase]
     while left:
         kind = left.pop()
         if kind in known:

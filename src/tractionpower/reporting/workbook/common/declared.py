@@ -26,6 +26,12 @@ DIGITS = 9
 
 _NOT_TOLD = ("format",)
 
+_OWN_WORDS = {"turns": {"left": mark("to the left"), "right": mark("to the right")}}
+"""Words of fields that mean something else elsewhere: a train that has left the line."""
+
+_OWN_NAMES = {"level": mark("control level")}
+"""Names of fields that mean something else elsewhere: level track."""
+
 
 @dataclass(frozen=True, slots=True)
 class Declared:
@@ -65,6 +71,9 @@ class Declared:
     @property
     def shown(self) -> Any:
         """What a cell shows: a number as it is, all else in words."""
+        own = _OWN_WORDS.get(self.name, {})
+        if isinstance(self.value, str) and self.value in own:
+            return tr(own[self.value])
         return readable(self.name, self.value) if _is_number(self.value) else in_words(self.value, self.words)
 
 
@@ -106,7 +115,7 @@ def flat(part: BaseModel, before: str = "") -> Iterator[tuple[str, Declared]]:
 
 def words_of(name: str) -> str:
     """Return the name of a field or list for people, in the language of the report."""
-    return recorded(Quantity(name, "").words)
+    return tr(_OWN_NAMES[name]) if name in _OWN_NAMES else recorded(Quantity(name, "").words)
 
 
 def in_words(value: Any, words: frozenset[str] = frozenset()) -> Any:
@@ -133,7 +142,8 @@ def in_words(value: Any, words: frozenset[str] = frozenset()) -> Any:
 def _part_in_words(field: Declared) -> str:
     """Return name, value and unit of a field in a sentence."""
     unit = Quantity(field.name, "").unit if _is_number(field.value) and words_of(field.name) != field.name else ""
-    return f"{words_of(field.name)} {in_words(field.value, field.words)} {unit}".strip()
+    value = in_words(field.value, field.words) if _is_number(field.value) else field.shown
+    return f"{words_of(field.name)} {value} {unit}".strip()
 
 
 def _list_in_words(values: Sequence[Any], words: frozenset[str]) -> str:

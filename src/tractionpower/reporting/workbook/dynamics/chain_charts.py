@@ -149,7 +149,7 @@ def _loop(page: Page, drawn: Drawn) -> None:
     _begin(
         page,
         title,
-        "The most loaded coupling: its recorded rows one behind the other, without those that lie close to the last one.",
+        "The most loaded coupling: its recorded rows one behind the other, but those close to the last.",
     )
     block = drawn.blocks["loop"]
     chart = scatter(title, tr("deflection [mm]"), tr(FORCE), legend=False)

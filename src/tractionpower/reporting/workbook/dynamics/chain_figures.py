@@ -13,7 +13,7 @@ from tractionpower.reporting.workbook.frame.formulas import Formula
 from tractionpower.reporting.workbook.frame.page import Column, heading_of
 
 _VALUE = (Column("figure", widest=34), Column("value", "0.0000", key="value"), Column("unit", "beside"))
-_OWN = (Column("in the units of the case", "0.0000", key="own"), Column("unit", "beside", key="own_unit"))
+_OWN = (Column("in the units of the case", "0.0000", key="own"), Column("unit of the case", "beside", key="own_unit"))
 _WHERE = (
     Column("place", "beside", widest=24),
     Column("time since the start", "beside", widest=14),

@@ -54,7 +54,19 @@ LINE_POINTS = 15.0
 CHART_ROWS = 30
 """Rows that a chart covers."""
 
-_BARE = {"km": mark("place [km]"), "kmh": mark("speed [km/h]"), "permille": mark("slope [‰]"), "unit": mark("type of unit")}
+_BARE = {
+    "km": mark("place [km]"),
+    "kmh": mark("speed [km/h]"),
+    "permille": mark("slope [‰]"),
+    "unit": mark("type of unit"),
+    "level": mark("control level"),
+}
+    "km": mark("place [km]"),
+    "kmh": mark("speed [km/h]"),
+    "permille": mark("slope [‰]"),
+    "unit": mark("type of unit"),
+    "level": mark("control level"),
+}
 
 
 def heading_of(name: str) -> str:
