@@ -61,12 +61,6 @@ _BARE = {
     "unit": mark("type of unit"),
     "level": mark("control level"),
 }
-    "km": mark("place [km]"),
-    "kmh": mark("speed [km/h]"),
-    "permille": mark("slope [‰]"),
-    "unit": mark("type of unit"),
-    "level": mark("control level"),
-}
 
 
 def heading_of(name: str) -> str:
