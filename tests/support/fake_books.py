@@ -6,24 +6,32 @@ from fake_dynamics import fake_results, fake_scenario
 from fake_feasibility import REMEDIES, judged
 from fake_results import NASTY, make_case
 from fake_sizing import outages, sized
+from small_stations import CASE
+from small_stations import make_case as make_stations
 from small_studies import load, make_scenario
 
 from tractionpower.cosimulation.simulate import simulate
+from tractionpower.dynamics.traindyn.stations_run import run_stations
 from tractionpower.io.library import change
 from tractionpower.model.dynamics.case import DynamicsScenario
+from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.model.scenario import Scenario
+from tractionpower.results.kept import input_hash_of
 from tractionpower.results.results import Results
+from tractionpower.results.store import RunWriter
 from tractionpower.studies.compare.study import compare
 from tractionpower.studies.sweep.study import sweep
 
 RESISTANCE = "supply.substations[A].internal_resistance_ohm"
-KINDS = ("run", "feasibility", "size", "contingency", "sweep", "compare", "dynamics")
+KINDS = ("run", "feasibility", "size", "contingency", "sweep", "compare", "dynamics", "stations")
 
 
-def make_kind(kind: str, folder: Path, *, nasty: bool = False) -> tuple[Results, Scenario | DynamicsScenario]:
+def make_kind(kind: str, folder: Path, *, nasty: bool = False) -> tuple[Results, Scenario | DynamicsScenario | StationsCase]:
     """Return results and scenario of a kind of study; `folder` takes the runs that a comparison is made of."""
     if kind == "dynamics":
         return _dynamics(folder, nasty)
+    if kind == "stations":
+        return _stations(folder, nasty)
     if kind in ("sweep", "compare"):
         return (_sweep if kind == "sweep" else _compare)(folder, nasty)
     results, scenario = make_case(trains=len(NASTY) if nasty else 4, substations=9 if kind == "contingency" else 3, nasty=nasty)
@@ -63,3 +71,13 @@ def _compare(folder: Path, nasty: bool) -> tuple[Results, Scenario]:
 def _dynamics(folder: Path, nasty: bool) -> tuple[Results, DynamicsScenario]:
     case = {"name": '=HYPERLINK("x") & <b> &P', "source": "@sum(1) & more"} if nasty else {}
     return fake_results(folder, **case), fake_scenario(**case)
+
+
+def _stations(folder: Path, nasty: bool) -> tuple[Results, StationsCase]:
+    named = [CASE["stations"][0] | {"name": "@sum & <A>"}, CASE["stations"][1] | {"name": "-7"}]
+    words = {"name": '=HYPERLINK("x") & <b> &P', "source": "@sum(1) & more", "stations": named} if nasty else {}
+    case = make_stations(traffic={"trains": 3, "headway_s": 60.0}, gradients=[{"from_m": 500.1, "to_m": 900.0, "permille": 6.0}],
+                     curves=[{"from_m": 3000.0, "to_m": 3300.0, "radius_m": 450.0, "turns": "left"}], **words)  # fmt: skip
+    writer = RunWriter(folder, "small-stations", input_hash_of(case), kind="stations", scenario=case)
+    run_stations(case, writer, "small-stations")
+    return Results.open(folder), case

@@ -2,6 +2,7 @@
 
 import matplotlib as mpl
 import numpy as np
+import pyarrow as pa
 import pytest
 from fake_dynamics import fake_results, fake_scenario
 from matplotlib.text import Text
@@ -14,6 +15,7 @@ from tractionpower.reporting.figures.base.style import STYLE, finish, new_figure
 from tractionpower.reporting.figures.dynamics import arshad_figures, coupling_figures, over_time, spread_figures
 from tractionpower.reporting.figures.dynamics.of_chain import NAMES, SINGLE, write_chain_figures
 from tractionpower.reporting.figures.dynamics.stopping_figure import stopping
+from tractionpower.reporting.reports import source_of
 from tractionpower.results.results import Results
 
 
@@ -49,7 +51,7 @@ def test_a_case_of_the_paper_has_its_six_plots_and_others_have_not(results, tmp_
     write_chain_figures(results, fake_scenario(), tmp_path)
     assert {path.stem for path in tmp_path.glob("*.png")} == set(SINGLE)
     write_chain_figures(results, fake_scenario(source=f"{PAPER}. Nothing is assumed."), tmp_path)
-    assert {path.stem for path in tmp_path.glob("*.png")} == set(NAMES)
+    assert {path.stem for path in tmp_path.glob("*.png")} == set(NAMES) - set(arshad_figures.TWICE)
     with drawing(ReportFigures(names=("stopping",), formats=("svg",))):
         write_chain_figures(results, fake_scenario(), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["stopping.svg"]
@@ -68,6 +70,58 @@ def test_no_text_is_cut(imperial, draw):
             if box.width > 0.0:
                 assert figure.bbox.x0 - 1.0 <= box.x0, text.get_text()
                 assert box.x1 <= figure.bbox.x1 + 1.0, text.get_text()
+
+
+@pytest.fixture(scope="module")
+def standing(results):
+    """Return a run in which nothing moves: all columns but times are zero."""
+    tables = {}
+    for name in results.tables:
+        rows = results.table(name)
+        for column in rows.select_dtypes("number").columns:
+            if column not in ("time_s", "lowest", "highest", "frequency"):
+                rows[column] = 0.0
+        tables[name] = pa.Table.from_pandas(rows, preserve_index=False)
+    tables.pop("rainflow")
+    return ChainData(Results({**results.run, "stops": []}, [], tables), fake_scenario())
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("draw", [*SINGLE.values(), *arshad_figures.FIGURES.values()], ids=NAMES)
+def test_a_train_that_stands_is_drawn_without_warnings(standing, draw):
+    figure = draw(standing)
+    if figure is not None:
+        finish(figure)
+        for axes in figure.axes:
+            low, high = axes.get_ylim()
+            assert low != high
+
+
+def test_names_of_cases_stand_at_the_foot_and_titles_in_a_line(data, tmp_path):
+    assert source_of(data.results).startswith(f"{data.scenario.name}, inputs ")
+    for draw in SINGLE.values():
+        first, *more = draw(data).get_suptitle().split("\n")
+        assert data.scenario.name not in first
+        assert first[0].isupper()
+        assert len(more) <= 1
+
+
+def test_emergency_is_a_word_on_the_axes_of_levels(data):
+    low = ChainData(data.results, fake_scenario(air_brake={"levels": 5}))
+    (ticks,) = ([text.get_text() for text in draw(low).axes[0].get_yticklabels()] for draw in (spread_figures.brake_and_speed,))
+    assert ticks[-1] == "emergency"
+    ticks = {tick.get_text(): tick.get_position()[1] for tick in over_time.controls(low).axes[0].get_yticklabels()}
+    assert ticks["emergency"] == -6.0
+    assert not any(text.startswith(("-", "\N{MINUS SIGN}")) for text in ticks)
+    assert "emergency" not in [text.get_text() for text in spread_figures.brake_and_speed(data).axes[0].get_yticklabels()]
+
+
+def test_few_levels_make_a_low_figure(data):
+    low, high = spread_figures.brake_and_speed(data), spread_figures.drive_and_speed(data)
+    rows = [len(figure.axes[0].get_yticks()) for figure in (low, high)]
+    heights = [figure.get_size_inches()[1] for figure in (low, high)]
+    for count, height in zip(rows, heights, strict=True):
+        assert height <= 1.4 + 0.24 * max(count, 2)
 
 
 def test_the_map_of_forces_keeps_the_greatest_of_each_spell():

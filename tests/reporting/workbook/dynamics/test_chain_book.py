@@ -153,3 +153,57 @@ def test_the_polish_book_speaks_of_couplings_as_railways_do(paths):
     assert "sprzęg" in words
     assert "przewodzie głównym" in words
     assert "greatest tension of" not in words
+
+
+@pytest.fixture(scope="module")
+def imperial(tmp_path_factory):
+    gradient = {"from_m": 820.4000000000001, "to_m": 1746.397525437186, "permille": 1}
+    case = {"units": "imperial", "track": {"gradients": [gradient]}}
+    folder = tmp_path_factory.mktemp("imperial")
+    return load_workbook(write_workbook(fake_results(folder, **case), fake_scenario(**case), folder / "x.xlsx"), data_only=True)
+
+
+def test_a_case_in_other_units_is_told_in_both(imperial, book, results):
+    cover = " ".join(texts(imperial["Cover"]))
+    assert "The case asks for mph, kip, in, psi" in cover
+    most = results.table("coupling_extremes")["greatest_tension_kn"].max()
+    assert f"{most / 4.4482216152605:.1f} kip ({most:.1f} kN)" in cover
+    figures = {row["figure"]: row for row in read_table(imperial["Key figures"])}
+    assert figures["greatest tension"]["in the units of the case"] == pytest.approx(most / 4.4482216152605)
+    stop = figures["stopping distance"]
+    assert stop["in the units of the case"] == pytest.approx(stop["value"] / 0.3048)
+    assert [figures[name]["unit of the case"] for name in ("greatest tension", "stopping distance")] == ["kip", "ft"]
+    rows = read_table(imperial["Coupling forces"], 1)
+    assert max(row["tension [kip]"] for row in rows) == pytest.approx(most / 4.4482216152605)
+    assert "Units" not in texts(book["Cover"])
+    assert "in the units of the case" not in read_table(book["Key figures"])[0]
+
+
+def test_inputs_have_no_digits_of_a_conversion(imperial):
+    (row,) = read_table(imperial["Inputs track"])
+    assert (row["from [m]"], row["to [m]"]) == (820.4, 1746.398)
+
+
+def test_the_loop_follows_every_row_and_cuts_no_corner(book, results):
+    rows = read_table(book["Course of couplings"], 2)
+    extremes = results.table("coupling_extremes").set_index("coupling")
+    name = extremes[["greatest_tension_kn", "greatest_compression_kn"]].max(axis=1)
+    table = results.table("couplings").query(f"coupling == '{name.idxmax()}'").set_index("time_s")
+    x, y = table["deflection_mm"].to_numpy(float), table["force_kn"].to_numpy(float)
+    kept = np.searchsorted(table.index.to_numpy(), [row["time [s]"] - 1e-6 for row in rows])
+    assert kept[0] == 0
+    assert kept[-1] == len(x) - 1
+    at = np.clip(np.searchsorted(kept, np.arange(len(x)), side="right") - 1, 0, len(kept) - 2)
+    away = [abs(values - values[kept[at]]) / np.ptp(values) for values in (x, y)]
+    behind = [abs(values - values[kept[at + 1]]) / np.ptp(values) for values in (x, y)]
+    assert max(np.minimum(*(np.maximum(*each) for each in (away, behind)))) < 0.05
+
+
+def test_both_axes_of_speeds_and_levels_begin_with_nothing(book, formulas):
+    chart = formulas["Charts"]._charts[0]
+    speeds, levels = chart, chart._charts[1]
+    assert speeds.y_axis.scaling.min == 0.0
+    assert levels.y_axis.scaling.min == 0.0
+    rows = read_table(book["Course of the train"])
+    fastest = max(value for row in rows for key, value in row.items() if key.startswith("speed of"))
+    assert speeds.y_axis.scaling.max >= fastest

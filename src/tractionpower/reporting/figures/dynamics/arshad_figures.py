@@ -37,7 +37,7 @@ LOOP = 2
 """Number of the coupling of their figure 9, from 0.
 
 It joins "the 3rd and the 4th car". The locomotive is counted here as the first one, as the model of the paper is a chain of N
-cars that begins with it: what is drawn is the coupling behind the second of the cars that are hauled.
+cars that begins with it: what is drawn is the coupling between the second and the third of the cars that are hauled.
 """
 
 MOST_CARS = 6

@@ -109,18 +109,18 @@ def _levels(axes: Axes, data: ChainData) -> None:
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, -1.0), max(high, 1.0))
     zero_line(axes)
-    _name_levels(axes, data.scenario.case.air_brake.levels)
     emergency = brake > data.scenario.case.air_brake.levels
+    _name_levels(axes, data.scenario.case.air_brake.levels, emergency=bool(emergency.any()))
     for k in np.flatnonzero(emergency & ~np.append(False, emergency[:-1])):
         style: Any = {"textcoords": "offset points", "fontsize": 7.0, "color": INK}
         axes.annotate(tr("emergency"), (times[k], -brake[k]), (3, 3), va="bottom", **style)
 
 
-def _name_levels(axes: Axes, levels: int) -> None:
+def _name_levels(axes: Axes, levels: int, *, emergency: bool) -> None:
     """Write levels without the sign that only tells where they are drawn; beyond the last one of the brake is emergency."""
     low, high = axes.get_ylim()
-    ticks = [float(tick) for tick in MaxNLocator(nbins=5, integer=True).tick_values(low, high)]
-    if low < -levels - 0.5:
+    ticks = [float(tick) for tick in MaxNLocator(nbins=5, integer=True).tick_values(low, high) if tick >= -levels]
+    if emergency:
         ticks = [tick for tick in ticks if tick > -0.8 * levels]  # so that no number stands on the word
         ticks.append(-levels - 1.0)
     words = {tick: tr("emergency") if tick < -levels - 0.5 else number(abs(tick), 0) for tick in ticks if low <= tick <= high}
