@@ -311,14 +311,14 @@ def test_a_case_of_stations_runs_by_the_same_command(tmp_path, capsys):
     pytest.importorskip("simpy")
     assert main(["dynamics", "run", "traindyn-three-stations"]) == 0
     told = capsys.readouterr()
-    assert "writing figures\n" in told.err
+    assert "writing figures and workbook\n" in told.err
     folder = tmp_path / "reports" / "dynamics-traindyn-three-stations"
     results = Results.open(folder)
     assert results.run["kind"] == "stations"
     assert set(results.tables) == {"point_masses", "station_events"}
     assert results.scenario.name == results.run["name"]
     assert {path.name for path in (folder / "figures").iterdir()} >= {"station_topology.png", "station_distance_time.png"}
-    assert not (folder / "report.xlsx").exists()
+    assert (folder / "report.xlsx").exists()
     assert "trains that have left" in told.out
     assert main(["report", str(folder), "--only", "figures"]) == 0
 

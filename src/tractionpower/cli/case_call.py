@@ -37,11 +37,6 @@ class CaseCall(Call):
         """Units that people are told figures in: metric, or imperial."""
         return self.scenario.case.units if self.kind == "dynamics" else "metric"
 
-    @property
-    def reports(self) -> str:
-        """What is written beside the tables; a case of stations has figures alone."""
-        return "figures and workbook" if self.kind == "dynamics" else "figures"
-
 
 def call_case(
     case: str, changes: Sequence[str], out: Path | None, look: Look, run: Mapping[str, float | str | None] | None = None

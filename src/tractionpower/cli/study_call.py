@@ -81,11 +81,6 @@ class Call:
         """Template of the reports that its files name."""
         return None
 
-    @property
-    def reports(self) -> str:
-        """What is written beside the tables."""
-        return "figures and workbook"
-
     def greet(self, more: str = "") -> None:
         """Say what is computed, and where it is from."""
         tell(f"{self.scenario.name or self.name}: {self.loaded.origin}{more}")
@@ -138,7 +133,7 @@ class Call:
 
         reports: Sequence[Path] = []
         if not no_reports:
-            tell(f"writing {self.reports}")
+            tell("writing figures and workbook")
             report = self.look.report(self.folder, self.template)
             reports = write_reports(Results.open(self.folder), self.scenario, self.folder, report)
         tell_results(self.folder, reports, writer.beside)
