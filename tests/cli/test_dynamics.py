@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 from fake_dynamics import fake_results
-from openpyxl import load_workbook
 
 from tractionpower.cli import main
 from tractionpower.dynamics.session import NotComputableError, Session
