@@ -12,7 +12,8 @@ README = Path(__file__).parents[1] / "README.md"
 NAMES = [
     "DynTrain", "InputError", "OutputError", "Polyline", "Problem", "Results", "Scenario", "Selection", "TractionPowerError",
     "TrainCharacteristics", "TrainDynamics", "UsageError", "change", "check", "compare", "contingency", "feasibility", "journeys",
-    "load", "load_case", "save", "select", "simulate", "size", "sweep",
+    "load", "load_case", "save", "select", "simulate",
+    "simulate_case", "size", "sweep",
 ]  # fmt: skip
 
 

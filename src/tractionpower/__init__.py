@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tractionpower.cosimulation.check import check_scenario as check
     from tractionpower.cosimulation.simulate import simulate
+    from tractionpower.dynamics.simulate import simulate_case
     from tractionpower.dynamics.traindyn.core import TrainDynamics
     from tractionpower.dynamics.traindyn.polyline import Polyline
     from tractionpower.dynamics.traindyn.train import DynTrain
@@ -55,6 +56,7 @@ _HOMES = {
     "save": ("io.scenario_files", "save_scenario"),
     "select": ("results.selection.select", "select"),
     "simulate": ("cosimulation.simulate", "simulate"),
+    "simulate_case": ("dynamics.simulate", "simulate_case"),
     "size": ("studies.ratings.study", "size"),
     "sweep": ("studies.sweep.study", "sweep"),
 }
@@ -83,6 +85,7 @@ __all__ = [
     "save",
     "select",
     "simulate",
+    "simulate_case",
     "size",
     "sweep",
 ]

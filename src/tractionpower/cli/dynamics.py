@@ -18,8 +18,6 @@ from tractionpower.cli.progress import steps_bar
 from tractionpower.cli.study_call import exit_code
 
 if TYPE_CHECKING:
-    from tractionpower.dynamics.run import CaseRun
-    from tractionpower.dynamics.traindyn.stations_run import StationsRun
     from tractionpower.results.outcome import Outcome
     from tractionpower.results.store import RunWriter
 
@@ -67,8 +65,10 @@ def run(
 
 def _compute(call: CaseCall, *, force: bool) -> tuple[Outcome, RunWriter]:
     """Compute the case and complete its results; when Ctrl-C comes what was computed is kept."""
+    from tractionpower.dynamics.simulate import new_run
+
     with call.preparing(force=force) as writer:
-        prepared = _new_run(call, writer)
+        prepared = new_run(call.scenario, writer, call.name, call.loaded.problems)
     call.warn(prepared.warnings)
     try:
         with steps_bar("computing") as update:
@@ -79,17 +79,6 @@ def _compute(call: CaseCall, *, force: bool) -> tuple[Outcome, RunWriter]:
         tell(f"`tractionpower report {writer.folder} --partial` makes reports of it")
         raise
     return outcome, writer
-
-
-def _new_run(call: CaseCall, writer: RunWriter) -> CaseRun | StationsRun:
-    """Return a run of the case, of whatever kind it is, checked."""
-    if call.kind == "dynamics":
-        from tractionpower.dynamics.run import CaseRun
-
-        return CaseRun(call.scenario, writer, call.name, warnings=call.loaded.problems)
-    from tractionpower.dynamics.traindyn.stations_run import StationsRun
-
-    return StationsRun(call.scenario, writer, call.name, call.loaded.problems)
 
 
 def _show(outcome: Outcome, units: str) -> None:

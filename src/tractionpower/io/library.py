@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from tractionpower.io.conductor_files import CONDUCTORS
 from tractionpower.io.rating_files import DUTY_CLASSES, RECTIFIER_UNITS
-from tractionpower.model.change import apply_changes
+from tractionpower.model.change import Changed, apply_changes
 from tractionpower.model.library import Library
 from tractionpower.model.scenario import Scenario
 
@@ -16,8 +16,8 @@ def shipped_library() -> Library:
     return Library(CONDUCTORS.shipped, DUTY_CLASSES.shipped, RECTIFIER_UNITS.shipped)
 
 
-def change(scenario: Scenario, changes: Iterable[str]) -> Scenario:
-    """Return `scenario` with all `changes` applied; equipment that they name may be any that ships.
+def change(scenario: Changed, changes: Iterable[str]) -> Changed:
+    """Return a scenario, or a case of train dynamics, with all `changes` applied; equipment that they name may be any that ships.
 
     See `tractionpower.model.change.apply_change` for their form.
 
@@ -26,4 +26,4 @@ def change(scenario: Scenario, changes: Iterable[str]) -> Scenario:
     InputError
         With all wrong paths, or else with all complaints of the model.
     """
-    return apply_changes(scenario, changes, shipped_library())
+    return apply_changes(scenario, changes, shipped_library() if isinstance(scenario, Scenario) else None)
