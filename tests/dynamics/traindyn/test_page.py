@@ -27,7 +27,7 @@ def test_the_tests_that_it_names_exist():
     known = {path.stem for path in files}
     for path in files:
         known.update(re.findall(r"def (test_\w+)", path.read_text(encoding="utf-8")))
-    assert len(named) > 12
+    assert len(named) > 3
     assert named <= known, named - known
 
 
