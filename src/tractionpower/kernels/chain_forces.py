@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tractionpower.kernels.air_brake import brake_force
-from tractionpower.kernels.couplings import coupling_force
+from tractionpower.kernels.couplings import commit_coupling, coupling_force
 from tractionpower.kernels.engines import electric_effort, lagged, steady_effort
 from tractionpower.kernels.jit import inlined, njit
 from tractionpower.kernels.way import bend_resistance, height_at, row_at, slope_at
@@ -65,8 +65,11 @@ def _aims(chain, i, control, speed):
 
 
 @njit
-def set_applied(chain, state, s, v, work):
-    """Write what acts on each vehicle besides friction into `work.applied` [N]: tractive effort, gradient, couplings."""
+def set_applied(chain, state, s, v, is_taken, work):
+    """Write what acts on each vehicle besides friction into `work.applied` [N]: tractive effort, gradient, couplings.
+
+    Where the instant `is_taken` over, and not only tried, the couplings remember it.
+    """
     movers = state.movers
     n = movers.shape[0]
     mean_grade = chain.chain[0].mean_grade
@@ -82,8 +85,13 @@ def set_applied(chain, state, s, v, work):
         behind = 0.0
         if i + 1 < n:
             stretch = stretch_of(chain, i, s[i], s[i + 1])
-            behind, damper = coupling_force(chain, state.links[i], chain.couplings[i], stretch, v[i] - v[i + 1])
-            work.force[i], work.damper[i] = behind, damper
+            link, row, rate = state.links[i], chain.couplings[i], v[i] - v[i + 1]
+            if is_taken:
+                work.damper[i] = commit_coupling(chain, link, row, stretch, rate)
+                behind = link.force_n
+            else:
+                behind, work.damper[i] = coupling_force(chain, link, row, stretch, rate)
+            work.force[i] = behind
         traction = mover.traction_n if vehicle.engine >= 0 else 0.0
         work.applied[i] = traction - mover.grade_n + ahead - behind
         ahead = behind
@@ -102,12 +110,22 @@ def _mean_slope(chain, movers, s):
 
 
 @njit
-def set_resisting(chain, i, mover, s_m, v_mps, share):
+def set_friction(chain, state, s, v, share, work):
+    """Write the most that friction can be on each vehicle, at places `s` [m] and speeds `v` [m/s], into `work.friction` [N].
+
+    `share` is how far the step has come, between the cylinder pressures at its beginning and its end. One call for all: the
+    tables of a chain are too many to be handed over for each vehicle.
+    """
+    for i in range(state.movers.shape[0]):
+        work.friction[i] = _resisting(chain, i, state.movers[i], s[i], v[i], share)
+
+
+@inlined
+def _resisting(chain, i, mover, s_m, v_mps, share):
     """Write what resists vehicle i by friction at a place and speed, and return its sum [N].
 
-    Running resistance with curve and tunnel, air brake, electric brake. `share` is how far the step has come, between the
-    cylinder pressures at its beginning and its end. Adhesion caps the brakes, or the whole as Zobory and Bekefi print it
-    (eq. 6); the parts shrink alike then.
+    Running resistance with curve and tunnel, air brake, electric brake. Adhesion caps the brakes, or the whole as Zobory and
+    Bekefi print it (eq. 6); the parts shrink alike then.
     """
     vehicle = chain.vehicles[i]
     speed = abs(v_mps)

@@ -13,14 +13,14 @@ from tractionpower.kernels.chain_forces import (
     begin_efforts,
     set_applied,
     set_efforts,
-    set_resisting,
+    set_friction,
     stretch_of,
     take_back_efforts,
 )
 from tractionpower.kernels.chain_state import DONE, STEP_TOO_SMALL
 from tractionpower.kernels.chain_tables import EULER, RK4, VARIABLE
 from tractionpower.kernels.couplings import commit_coupling
-from tractionpower.kernels.jit import njit
+from tractionpower.kernels.jit import inlined, njit
 
 _LEAST_PART = 1e-3
 """Part of a step below which it is not cut further where a vehicle comes to a stand."""
@@ -69,11 +69,12 @@ def leap(chain, state, control, h, work):
         work.stage_s[i] = mover.s_m + 0.5 * h * mover.v_mps
     begin_efforts(chain, state, control, work)
     set_efforts(chain, state, control, work.middle_v, 0.5 * h, work)
-    set_applied(chain, state, work.stage_s, work.middle_v, work)
+    set_applied(chain, state, work.stage_s, work.middle_v, True, work)
+    set_friction(chain, state, work.stage_s, work.middle_v, 0.5, work)
     for i in range(n):
         mover = movers[i]
         inertia = chain.vehicles[i].inertia_kg
-        greatest = set_resisting(chain, i, mover, work.stage_s[i], work.middle_v[i], 0.5)
+        greatest = work.friction[i]
         free, drop = mover.v_mps + h * work.applied[i] / inertia, h * greatest / inertia
         after = free - drop if free > drop else (free + drop if free < -drop else 0.0)
         way = 0.5 * h * (mover.v_mps + after)
@@ -84,8 +85,6 @@ def leap(chain, state, control, h, work):
         mover.s_m += way
     for j in range(n - 1):
         link = state.links[j]
-        stretch = stretch_of(chain, j, work.stage_s[j], work.stage_s[j + 1])
-        commit_coupling(chain, link, chain.couplings[j], stretch, work.middle_v[j] - work.middle_v[j + 1])
         longer = work.stage_v[j] - work.stage_v[j + 1]
         link.absorbed_j += work.force[j] * longer
         link.damper_j += work.damper[j] * longer
@@ -95,7 +94,7 @@ def leap(chain, state, control, h, work):
     set_efforts(chain, state, control, work.stage_v, h, work)
 
 
-@njit
+@inlined
 def _count_works(ledger, chain, i, mover, greatest, friction, way):
     """Add the works of a step of one vehicle; of the greatest friction the parts act in proportion."""
     if chain.vehicles[i].engine >= 0:
@@ -160,12 +159,13 @@ def _set_directions(chain, state, share, work):
         slow |= abs(mover.v_mps) <= least
     if not slow:
         return
-    set_applied(chain, state, work.stage_s, work.stage_v, work)
+    set_applied(chain, state, work.stage_s, work.stage_v, False, work)
+    set_friction(chain, state, work.stage_s, work.stage_v, share, work)
     for i in range(movers.shape[0]):
         mover = movers[i]
         if abs(mover.v_mps) > least:
             continue
-        greatest = set_resisting(chain, i, mover, mover.s_m, mover.v_mps, share)
+        greatest = work.friction[i]
         applied = work.applied[i]
         if greatest > 0.0 and abs(applied) <= greatest:
             _halt(chain, state, i)
@@ -211,7 +211,7 @@ def _attempt(chain, state, control, times, work):
             work.stage_v[i] = movers[i].v_mps + h * dv
             work.speeds[q, i] = work.stage_v[i]
         set_efforts(chain, state, control, work.stage_v, c[q] * h, work)
-        set_applied(chain, state, work.stage_s, work.stage_v, work)
+        set_applied(chain, state, work.stage_s, work.stage_v, False, work)
         _evaluate(chain, state, q, (offset + c[q] * h) / whole, work)
     error, theta = 0.0, 1.0
     tolerance = chain.chain[0].tolerance
@@ -236,12 +236,12 @@ def _evaluate(chain, state, q, share, work):
     """Write accelerations and powers of stage `q`."""
     movers = state.movers
     n = movers.shape[0]
+    set_friction(chain, state, work.stage_s, work.stage_v, share, work)
     for k in range(work.powers.shape[1]):
         work.powers[q, k] = 0.0
     for i in range(n):
         mover, v = movers[i], work.stage_v[i]
-        greatest = set_resisting(chain, i, mover, work.stage_s[i], v, share)
-        work.friction[i] = greatest
+        greatest = work.friction[i]
         direction = mover.direction
         work.accelerations[q, i] = (work.applied[i] - direction * greatest) / chain.vehicles[i].inertia_kg
         if direction == 0.0:

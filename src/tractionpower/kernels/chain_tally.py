@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tractionpower.kernels.air_brake import reduction_at
-from tractionpower.kernels.chain_forces import set_applied, set_resisting, stretch_of
+from tractionpower.kernels.chain_forces import set_applied, set_friction, stretch_of
 from tractionpower.kernels.chain_state import TURN_N
 from tractionpower.kernels.jit import inlined, njit
 
@@ -52,14 +52,14 @@ def note_speeds(state):
 def _follow_vehicles(state, buffers, h):
     """Keep the extremes of all vehicles, and note where the train has come to a stand."""
     ledger, first = state.ledger[0], state.movers[0]
-    moved = first.s_m - first.start_m
+    moved, rate = first.s_m - first.start_m, 1.0 / h
     standing = True
     for i in range(state.movers.shape[0]):
         mover = state.movers[i]
         standing &= mover.v_mps == 0.0
         if abs(mover.v_mps) > abs(mover.greatest_mps):
             mover.greatest_mps, mover.greatest_at_s = mover.v_mps, ledger.time_s
-        gained = (mover.v_mps - mover.before_mps) / h
+        gained = (mover.v_mps - mover.before_mps) * rate
         if abs(gained) > abs(mover.sharpest_mps2):
             mover.sharpest_mps2, mover.sharpest_at_s = gained, ledger.time_s
         further = mover.s_m - mover.start_m - moved
@@ -136,10 +136,11 @@ def set_present(chain, state, work):
     movers = state.movers
     for i in range(movers.shape[0]):
         work.stage_s[i], work.stage_v[i] = movers[i].s_m, movers[i].v_mps
-    set_applied(chain, state, work.stage_s, work.stage_v, work)
+    set_applied(chain, state, work.stage_s, work.stage_v, False, work)
+    set_friction(chain, state, work.stage_s, work.stage_v, 1.0, work)
     for i in range(movers.shape[0]):
         mover, applied = movers[i], work.applied[i]
-        greatest = set_resisting(chain, i, mover, mover.s_m, mover.v_mps, 1.0)
+        greatest = work.friction[i]
         friction = greatest if mover.v_mps > 0.0 else -greatest
         if mover.v_mps == 0.0:
             friction = min(max(applied, -greatest), greatest)

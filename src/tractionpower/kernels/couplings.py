@@ -53,8 +53,12 @@ def coupling_force(chain, link, row, stretch_m, rate_mps):
 
 @inlined
 def commit_coupling(chain, link, row, stretch_m, rate_mps):
-    """Take stretch and rate as the instant that has been reached: write force, stretch and what the gears remember."""
-    force_n = row.damping_ns_per_m * rate_mps
+    """Take stretch and rate as the instant that has been reached: write force, stretch and what the gears remember.
+
+    Returns the part of its dampers in the force [N], which is that of `coupling_force`.
+    """
+    damper_n = row.damping_ns_per_m * rate_mps
+    force_n = damper_n
     draw_n, draw_m, buff_n, buff_m = 0.0, 0.0, 0.0, 0.0
     x = stretch_m - row.half_slack_m
     if x > 0.0:
@@ -62,16 +66,21 @@ def commit_coupling(chain, link, row, stretch_m, rate_mps):
         draw_m = min(x, gear.stroke_m)
         draw_n = _gear_force(chain.curves, gear, x, -rate_mps, link.draw_n, link.draw_m)
         pull = draw_n + _solid_force(gear, x)
-        force_n += pull + _locked_damping(gear, pull, rate_mps)
+        lost = _locked_damping(gear, pull, rate_mps)
+        force_n += pull + lost
+        damper_n += lost
     x = -stretch_m - row.half_slack_m
     if x > 0.0:
         gear = chain.gears[row.buff]
         buff_m = min(x, gear.stroke_m)
         buff_n = _gear_force(chain.curves, gear, x, rate_mps, link.buff_n, link.buff_m)
         push = buff_n + _solid_force(gear, x)
-        force_n -= push + _locked_damping(gear, push, -rate_mps)
+        lost = _locked_damping(gear, push, -rate_mps)
+        force_n -= push + lost
+        damper_n -= lost
     link.force_n, link.stretch_m = force_n, stretch_m
     link.draw_n, link.draw_m, link.buff_n, link.buff_m = draw_n, draw_m, buff_n, buff_m
+    return damper_n
 
 
 @njit
