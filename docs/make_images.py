@@ -21,7 +21,7 @@ from PIL import Image
 import tractionpower as tp
 from tractionpower.cli import main
 from tractionpower.dynamics.couplings import loop
-from tractionpower.dynamics.traindyn.stations_run import run_stations
+from tractionpower.dynamics.traindyn.stations_run import StationsRun
 from tractionpower.io.documents import read_document
 from tractionpower.io.scenario_files import load_scenario
 from tractionpower.model.dynamics.coupling import Coupling
@@ -194,7 +194,7 @@ def draw_stations() -> Iterator[tuple[str, Figure]]:
     """Draw trains on the three stations of TrainDyn, and their places over time."""
     case = read_document(IMAGES.parents[1] / "rollingstock" / "dynamics" / "traindyn-three-stations" / "case.yaml", StationsCase)
     writer = MemoryWriter()
-    run_stations(case, writer)
+    StationsRun(case, writer).execute()
     rows = writer.tables()["point_masses"].to_pandas()
     yield "traindyn-topology.png", topology(case, rows)
     yield "traindyn-distance-time.png", distance_over_time(case, rows)

@@ -11,14 +11,12 @@ from small_stations import make_case as make_stations
 from small_studies import load, make_scenario
 
 from tractionpower.cosimulation.simulate import simulate
-from tractionpower.dynamics.traindyn.stations_run import run_stations
+from tractionpower.dynamics.simulate import simulate_case
 from tractionpower.io.library import change
 from tractionpower.model.dynamics.case import DynamicsScenario
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.model.scenario import Scenario
-from tractionpower.results.kept import input_hash_of
 from tractionpower.results.results import Results
-from tractionpower.results.store import RunWriter
 from tractionpower.studies.compare.study import compare
 from tractionpower.studies.sweep.study import sweep
 
@@ -78,6 +76,4 @@ def _stations(folder: Path, nasty: bool) -> tuple[Results, StationsCase]:
     words = {"name": '=HYPERLINK("x") & <b> &P', "source": "@sum(1) & more", "stations": named} if nasty else {}
     case = make_stations(traffic={"trains": 3, "headway_s": 60.0}, gradients=[{"from_m": 500.1, "to_m": 900.0, "permille": 6.0}],
                      curves=[{"from_m": 3000.0, "to_m": 3300.0, "radius_m": 450.0, "turns": "left"}], **words)  # fmt: skip
-    writer = RunWriter(folder, "small-stations", input_hash_of(case), kind="stations", scenario=case)
-    run_stations(case, writer, "small-stations")
-    return Results.open(folder), case
+    return simulate_case(case, folder), case

@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 from point_trains import RUNNING
 
-from tractionpower.dynamics.traindyn.stations_run import run_stations
+from tractionpower.dynamics.traindyn.stations_run import StationsRun
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.results.outcome import Outcome
 from tractionpower.results.store import MemoryWriter
@@ -42,7 +42,7 @@ def make_case(**more: Any) -> StationsCase:
 def compute(case: StationsCase, **more: Any) -> tuple[pd.DataFrame, pd.DataFrame, Outcome]:
     """Return rows and events of a case, and the outcome."""
     writer = MemoryWriter()
-    outcome = run_stations(case, writer, "small", **more)
+    outcome = StationsRun(case, writer, "small").execute(**more)
     tables = writer.tables()
     texts = {"train": str, "kind": str, "station_track": str}
     rows = tables["point_masses"].to_pandas().astype(texts | {"state": str})

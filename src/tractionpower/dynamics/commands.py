@@ -118,9 +118,9 @@ def reduction_of_row(row: PipeRow, time_s: float) -> float:
 
 
 def drive_levels(case: Case) -> int:
-    """Return the highest level of the drive control of any powered vehicle."""
-    own = [part.traction for part in case.vehicles if part.traction is not None]
-    return max((traction.levels for traction in [*own, case.traction or Traction()]), default=0)
+    """Return the highest level of the drive control of any vehicle."""
+    given = (case.traction, *(part.traction for part in case.vehicles))
+    return max((traction.levels for traction in given if traction is not None), default=Traction().levels)
 
 
 def electric_levels(case: Case) -> int:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
-from tractionpower.dynamics.commands import electric_levels
+from tractionpower.dynamics.commands import drive_levels, electric_levels
 from tractionpower.dynamics.engines import powered
-from tractionpower.dynamics.gear_checks import check_gear, declared, has_electric_brake
+from tractionpower.dynamics.gear_checks import check_gear, has_electric_brake
 from tractionpower.errors import Problem
 from tractionpower.model.dynamics.case import Command, DynamicsScenario
-from tractionpower.model.dynamics.gear import AirBrake, Traction
+from tractionpower.model.dynamics.gear import AirBrake
 
 _FAR = 0.1
 """Relative distance of the cylinder pressure of full service from the greatest one that is doubtful."""
@@ -103,8 +103,7 @@ def _check_use(scenario: DynamicsScenario) -> Iterator[Problem]:
 def _check_commands(scenario: DynamicsScenario) -> Iterator[Problem]:
     case = scenario.case
     air, electric = case.air_brake, electric_levels(case)
-    tractions = [traction.levels for _, traction in declared(case, "traction")]
-    drive = max(tractions, default=Traction().levels)
+    drive = drive_levels(case)
     level, emergency = 0, case.start.brake == "emergency"
     for k, command in enumerate(case.commands):
         path = f"case.commands[{k}]"

@@ -8,9 +8,7 @@ from numpy.typing import NDArray
 from tractionpower.dynamics.commands import BAR, brake_target, drive_levels, electric_levels, next_pipe_row, shown_level
 from tractionpower.errors import UsageError
 from tractionpower.kernels.chain_state import ChainState
-from tractionpower.model.dynamics.case import Case
-
-MOST_INDEPENDENT_BAR = 15.0
+from tractionpower.model.dynamics.case import MOST_INDEPENDENT_BAR, Case
 
 Setting = tuple[int | None, int | str | None, float | None, float | None]
 """Drive, brake, electric, independent_bar; None leaves one as it is."""

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator
-from typing import Literal, overload
+from collections.abc import Iterable, Iterator
+from typing import Literal, TypeVar
 
 from tractionpower.dynamics.engines import effort_of, electric_brake_of, powered
 from tractionpower.errors import Problem
 from tractionpower.model.drive import TableDrive
-from tractionpower.model.dynamics.case import Case, CasePart, DynamicsScenario
+from tractionpower.model.dynamics.case import CasePart, DynamicsScenario
 from tractionpower.model.dynamics.gear import BlockFriction, BrakeGear, ElectricBrake, Traction
 from tractionpower.model.vehicle import Vehicle
+
+Item = TypeVar("Item", Traction, BrakeGear, ElectricBrake)
 
 _GIVE_TRACTION = "give a traction with starting_effort_kn and power_kw, or with effort by points"
 
@@ -20,27 +22,22 @@ def check_gear(scenario: DynamicsScenario) -> list[Problem]:
     """Return everything that is wrong or doubtful with traction, electric brake and brake gear of a case."""
     case = scenario.case
     problems: list[Problem] = []
-    for path, traction in declared(case, "traction"):
+    tractions = _declared("traction", case.traction, (part.traction for part in case.vehicles))
+    electric = _declared("electric_brake", case.electric_brake, (part.electric_brake for part in case.vehicles))
+    for path, traction in tractions:
         problems += _check_traction(path, traction)
-    for path, gear in declared(case, "brake"):
+    for path, gear in _declared("brake", case.brake, (part.brake for part in case.vehicles)):
         problems += _check_brake_gear(path, gear)
     problems += _check_efforts(scenario)
-    problems += _check_equal_levels("traction", declared(case, "traction"))
-    problems += _check_equal_levels("electric_brake", declared(case, "electric_brake"))
+    problems += _check_equal_levels("traction", tractions)
+    problems += _check_equal_levels("electric_brake", electric)
     return problems
 
 
-@overload
-def declared(case: Case, name: Literal["traction"]) -> list[tuple[str, Traction]]: ...
-@overload
-def declared(case: Case, name: Literal["brake"]) -> list[tuple[str, BrakeGear]]: ...
-@overload
-def declared(case: Case, name: Literal["electric_brake"]) -> list[tuple[str, ElectricBrake]]: ...
-def declared(case, name):  # type: ignore[no-untyped-def]
-    """Return all that a case declares under a name, for all vehicles or for some, with the path of each."""
-    given = [(f"case.{name}", getattr(case, name))]
-    given += [(f"case.vehicles[{k}].{name}", getattr(part, name)) for k, part in enumerate(case.vehicles)]
-    return [(path, value) for path, value in given if value is not None]
+def _declared(name: str, common: Item | None, own: Iterable[Item | None]) -> list[tuple[str, Item]]:
+    """Return what a case declares under a name for all vehicles and for some, with the path of each."""
+    found = [] if common is None else [(f"case.{name}", common)]
+    return found + [(f"case.vehicles[{k}].{name}", value) for k, value in enumerate(own) if value is not None]
 
 
 def own_parts(scenario: DynamicsScenario) -> list[tuple[int, CasePart, Vehicle, bool]]:

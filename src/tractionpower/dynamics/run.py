@@ -135,23 +135,3 @@ class CaseRun:
         if not self.session.has_ended:
             return "interrupted"
         return "complete" if closes else "flagged"
-
-
-def run_case(
-    scenario: DynamicsScenario,
-    writer: RunWriter,
-    study: str = "",
-    progress: Progress | None = None,
-    warnings: Iterable[Problem] = (),
-) -> Outcome:
-    """Run a case and complete the results in the folder of `writer`; `warnings` of reading it are kept with them.
-
-    Raises
-    ------
-    InputError
-        With all problems of the case.
-    """
-    run = CaseRun(scenario, writer, study, warnings=warnings)
-    outcome = run.execute(progress)
-    writer.finish(outcome.run, outcome.key_figures)
-    return outcome

@@ -35,7 +35,6 @@ ROWS = 1024
 TURNS = 65_536
 """Turning points of coupling forces that a block may note, at least; a step may note one for each coupling."""
 
-
 MARKS = 256
 """Commands and standstills that a block may note."""
 

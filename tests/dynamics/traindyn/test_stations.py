@@ -8,7 +8,7 @@ import pytest
 from small_stations import CASE, TRAIN, compute, make_case
 
 from tractionpower.dynamics.traindyn.layout import SHORT_M, lay_out
-from tractionpower.dynamics.traindyn.stations_run import StationsRun, run_stations
+from tractionpower.dynamics.traindyn.stations_run import StationsRun
 from tractionpower.dynamics.traindyn.traffic import traffic
 from tractionpower.errors import InputError, UsageError
 from tractionpower.io.dynamics_files import load_case
@@ -152,7 +152,7 @@ def test_progress_is_told_up_to_the_end_and_rows_come_in_parts():
             super().append(table, rows)
 
     writer = Parts()
-    run_stations(make_case(traffic={"trains": 6}), writer, progress=lambda done, total: told.append((done, total)))
+    StationsRun(make_case(traffic={"trains": 6}), writer).execute(lambda done, total: told.append((done, total)))
     assert told[-1] == (3600, 3600)
     assert told == sorted(told)
     assert len([table for table, _ in sizes if table == "point_masses"]) > 1
@@ -174,7 +174,7 @@ def test_without_simpy_it_says_what_to_install(monkeypatch):
 
 def test_a_case_with_errors_does_not_run():
     with pytest.raises(InputError, match="length_m"):
-        run_stations(make_case(length_m=3000.0), MemoryWriter())
+        StationsRun(make_case(length_m=3000.0), MemoryWriter())
 
 
 def test_tracks_are_laid_out_by_turns_on_both_sides():

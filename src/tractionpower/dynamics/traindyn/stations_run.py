@@ -108,20 +108,3 @@ class StationsRun:
         self._recorder.flush()
         unfinished = self.outcome("interrupted")
         return writer.keep_unfinished(unfinished.run, unfinished.key_figures)
-
-
-def run_stations(scenario: StationsCase, writer: Writer, study: str = "", progress: Progress | None = None) -> Outcome:
-    """Run a case of stations and return what came of it; a `RunWriter` completes its folder with that.
-
-    Raises
-    ------
-    InputError
-        With all problems of the case.
-    UsageError
-        If SimPy is not installed.
-    """
-    run = StationsRun(scenario, writer, study)
-    outcome = run.execute(progress)
-    if isinstance(writer, RunWriter):
-        writer.finish(outcome.run, outcome.key_figures)
-    return outcome

@@ -83,6 +83,9 @@ class CaseTrack(Declaration):
 MOST_LEVELS = 100
 """Levels that a control has at most."""
 
+MOST_INDEPENDENT_BAR = 15.0
+"""Pressure of the independent brake that can be asked for at most."""
+
 BrakeWord = Literal["charge", "release", "full_service", "emergency", "unchanged"]
 
 BRAKE_WORDS: tuple[str, ...] = get_args(BrakeWord)
@@ -121,7 +124,11 @@ class Command(Declaration):
     )
     electric: Real | None = Field(default=None, ge=0, le=100, description="Level of the electric brake.")
     independent_bar: Real | None = field(
-        "independent_bar", "Cylinder pressure of the independent brake of powered vehicles.", at_least=0, at_most=15, default=None
+        "independent_bar",
+        "Cylinder pressure of the independent brake of powered vehicles.",
+        at_least=0,
+        at_most=MOST_INDEPENDENT_BAR,
+        default=None,
     )
 
 

@@ -6,7 +6,7 @@ import pytest
 from matplotlib.figure import Figure
 from small_stations import compute, make_case
 
-from tractionpower.dynamics.traindyn.stations_run import run_stations
+from tractionpower.dynamics.traindyn.stations_run import StationsRun
 from tractionpower.model.report import ReportFigures
 from tractionpower.reporting.figures.base.drawing import drawing
 from tractionpower.reporting.figures.base.style import BLUE, GREEN, GREY, ORANGE
@@ -96,7 +96,7 @@ def test_without_instants_that_with_most_trains_is_shown(case, rows):
 
 def test_files_are_written_as_the_template_says(case, tmp_path):
     writer = MemoryWriter()
-    outcome = run_stations(case, writer)
+    outcome = StationsRun(case, writer).execute()
     results = Results(run=outcome.run, key_figures=outcome.key_figures, _source=writer.tables())
     assert {path.stem for path in write_station_figures(results, case, tmp_path)} == {*NAMES}
     (tmp_path / "own.txt").touch()

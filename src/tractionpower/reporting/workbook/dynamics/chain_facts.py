@@ -9,7 +9,7 @@ from tractionpower.model.dynamics.coupling import Coupling
 from tractionpower.reporting.facts.chain_data import ChainData
 from tractionpower.reporting.texts import decimal, mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.facts import Computed
+from tractionpower.reporting.workbook.frame.facts import CaseFacts
 from tractionpower.results.results import Results
 
 SIDES = {
@@ -19,33 +19,18 @@ SIDES = {
 """What is judged of a kind of couplings, and its limit, by the side of the force."""
 
 
-class ChainFacts(Computed):
+class ChainFacts(CaseFacts):
     """A run of train dynamics and its case, as the sheets ask for them."""
 
     def __init__(self, results: Results, scenario: DynamicsScenario) -> None:
-        super().__init__(results)
+        super().__init__(results, scenario)
         self.scenario = scenario
         self.data = ChainData(results, scenario)
-
-    @property
-    def name(self) -> str:
-        """Name of the case."""
-        return self.scenario.name or super().name
-
-    @property
-    def study(self) -> str:
-        """Name of the case."""
-        return self.name
 
     @property
     def about(self) -> str:
         """What the document is about."""
         return tr("Simulation of the longitudinal dynamics of a train")
-
-    @property
-    def time_heading(self) -> str:
-        """What times are called: they count from the start of the case."""
-        return mark("time since the start")
 
     @property
     def verdicts(self) -> list[dict[str, Any]]:

@@ -8,6 +8,8 @@ from typing import Any
 
 import pandas as pd
 
+from tractionpower.model.dynamics.case import DynamicsScenario
+from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.model.limits import Limit, find_limit
 from tractionpower.model.scenario import Scenario
 from tractionpower.model.timetable import TrainRun
@@ -127,6 +129,29 @@ class Computed(Subject):
     def when(self, place: str, name: str) -> str:
         """Return the time of a key figure as it is written."""
         return str(self.places.get(place, {}).get(name, {}).get("time") or "")
+
+
+class CaseFacts(Computed):
+    """A run of a case of train dynamics, of either kind, as the sheets ask for it."""
+
+    def __init__(self, results: Results, scenario: DynamicsScenario | StationsCase) -> None:
+        super().__init__(results)
+        self._case_name = scenario.name
+
+    @property
+    def name(self) -> str:
+        """Name of the case."""
+        return self._case_name or super().name
+
+    @property
+    def study(self) -> str:
+        """Name of the case."""
+        return self.name
+
+    @property
+    def time_heading(self) -> str:
+        """What times are called: they count from the start of the case."""
+        return mark("time since the start")
 
 
 class Facts(Computed):

@@ -12,7 +12,7 @@ import pandas as pd
 from tractionpower.model.dynamics.stations import StationsCase
 from tractionpower.reporting.texts import mark, tr
 from tractionpower.reporting.workbook.frame.book import Book
-from tractionpower.reporting.workbook.frame.facts import Computed
+from tractionpower.reporting.workbook.frame.facts import CaseFacts
 from tractionpower.results.results import Results
 
 KINDS = {
@@ -69,32 +69,17 @@ class StationTrain:
         return self.left_s - self.entered_s
 
 
-class StationFacts(Computed):
+class StationFacts(CaseFacts):
     """A run of a case of stations, as the sheets ask for it."""
 
     def __init__(self, results: Results, scenario: StationsCase) -> None:
-        super().__init__(results)
+        super().__init__(results, scenario)
         self.scenario = scenario
-
-    @property
-    def name(self) -> str:
-        """Name of the case."""
-        return self.scenario.name or super().name
-
-    @property
-    def study(self) -> str:
-        """Name of the case."""
-        return self.name
 
     @property
     def about(self) -> str:
         """What the document is about."""
         return tr("Simulation of trains as point masses on a line with stations")
-
-    @property
-    def time_heading(self) -> str:
-        """What times are called: they count from the start of the case."""
-        return mark("time since the start")
 
     @cached_property
     def events(self) -> pd.DataFrame:
